@@ -14,7 +14,7 @@ use plumbline_effects::{Measurements, RigModel, RobotModel, SeenUnder};
 use plumbline_gap::{Finding, Options, find};
 use plumbline_model::measured_data::left_out;
 use plumbline_model::robot::{Rig, default_rig};
-use plumbline_model::session::{Manifest, RigReference};
+use plumbline_model::session::Manifest;
 use plumbline_model::{Session, Unattended};
 use plumbline_twin::eyes::RenderError;
 use plumbline_twin::{Lockstep, Scenario, Toy};
@@ -51,22 +51,8 @@ fn watched(twin: &mut Lockstep, model: &Arc<RobotModel>, minutes: f64) -> Option
 
 fn explained(rig: &Rig, twin: &Lockstep, monitor: &Monitor) -> (Session, Finding) {
     let table = log_of(rig, &twin.encoders(), monitor.samples()).expect("long enough");
-    let session = Session {
-        manifest: Manifest {
-            rig: RigReference::Named(rig.name.clone()),
-            started: jiff::Timestamp::UNIX_EPOCH,
-            operator: String::new(),
-            notes: String::new(),
-            touchscreen: None,
-            chain: None,
-            extra: toml::Table::new(),
-        },
-        touches: None,
-        localizations: Some(table),
-        poses: None,
-        stereo: Default::default(),
-        log: None,
-    };
+    let manifest = Manifest::of_rig(rig.name.as_str(), jiff::Timestamp::UNIX_EPOCH);
+    let session = Session { localizations: Some(table), ..Session::new(manifest) };
     let rows = Measurements::of_sessions(&[("watched".to_owned(), session.clone())], rig).expect("usable");
     let finding = find(&rows, &Options::default(), &Unattended).expect("can be looked at");
     (session, finding)

@@ -12,7 +12,7 @@ use plumbline_engine::ground::World;
 use plumbline_engine::view::{RecordingState, SourceStatus};
 use plumbline_model::measured_data::left_out;
 use plumbline_model::robot::default_rig;
-use plumbline_model::{CameraModel, StereoCalibration};
+use plumbline_model::{CameraModel, EyesThen, StereoCalibration};
 use plumbline_recording::{FILE, Recording, Topic};
 use plumbline_tests::{Window, eye_renderer, until, view, window};
 use serde_json::{Value, json};
@@ -56,8 +56,14 @@ fn read_by_python(file: &Path) -> Option<Value> {
         left_out("the Python package mcap is not here; ./plumbline test fetches it");
         return None;
     }
-    let topics =
-        [Topic::LeftEye, Topic::RightEye, Topic::Joints, Topic::LeftCalibration, Topic::RightCalibration];
+    let topics = [
+        Topic::LeftEye,
+        Topic::RightEye,
+        Topic::Joints,
+        Topic::LeftCalibration,
+        Topic::RightCalibration,
+        Topic::Transforms,
+    ];
     let told = Command::new("python3")
         .args(["-c", READER])
         .arg(file)
@@ -76,6 +82,7 @@ fn others_read(file: &Path, pairs: u64, readings: usize, dropped: u64) {
     assert_eq!([Topic::LeftEye, Topic::RightEye].map(of), [Some(pairs); 2], "{}", found["counts"]);
     assert_eq!(found["jpegs"], 2 * pairs, "each image is a whole JPEG");
     assert_eq!(of(Topic::Joints), Some(readings as u64));
+    assert!(of(Topic::Transforms).is_some_and(|told| told <= pairs), "where the eyes were");
     let joints = found["joints"].as_array().expect("names");
     assert!(
         ["head_z", "r_elbow_y", "l_elbow_y"].iter().all(|name| joints.contains(&json!(name))),
@@ -131,6 +138,11 @@ fn the_twin_is_recorded_and_played_again() {
     let stop = asked.last().expect("at least that it ends").what.clone();
     assert_eq!(stop, json!({ "workflow": "recording", "command": "stop" }));
     assert_eq!(recording.dropped(), Some(last.so_far.dropped));
+    let all = 0..recording.pair_count();
+    let eyes: Vec<EyesThen> = all.map(|index| recording.pair(index).expect("readable").eyes).collect();
+    assert!(eyes.iter().all(|then| then.on_s.is_some()), "{eyes:?}");
+    // A busy machine may not hear a servo now and then.
+    assert!(eyes.iter().any(|then| then.head_rad.is_some()), "{eyes:?}");
     others_read(&last.session.join(FILE), last.so_far.pairs, joints.len(), last.so_far.dropped);
 
     window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::K);
@@ -142,6 +154,9 @@ fn the_twin_is_recorded_and_played_again() {
     until(&mut window, "the recording", |window| {
         let source = view(window).source.clone();
         source.spec.as_ref() == Some(&of_it) && source.replay.is_some_and(|replay| replay.position > Some(2))
+    });
+    until(&mut window, "for how long the eyes had been on", |window| {
+        view(window).eyes.minutes_since_on.is_some()
     });
     let length = view(&window).source.replay.expect("just seen").length;
     assert_eq!(length, last.so_far.pairs);

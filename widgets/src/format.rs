@@ -4,6 +4,8 @@
 
 use std::time::Duration;
 
+use plumbline_model::number;
+
 /// Stands where there is no number.
 pub const NONE: &str = "—";
 
@@ -220,15 +222,7 @@ pub fn significant(value: f64, digits: i32) -> String {
 
 /// A number with so many decimals, with a real minus sign and without negative zero.
 pub fn fixed(value: f64, decimals: usize) -> String {
-    if !value.is_finite() {
-        return NONE.to_owned();
-    }
-    let text = format!("{value:.decimals$}");
-    match text.strip_prefix('-') {
-        Some(rest) if rest.chars().all(|c| c == '0' || c == '.') => rest.to_owned(),
-        Some(rest) => format!("−{rest}"),
-        None => text,
-    }
+    number::fixed(value, decimals).unwrap_or_else(|| NONE.to_owned())
 }
 
 /// Decimals that show so many significant digits of a value.

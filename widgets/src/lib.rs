@@ -1,6 +1,7 @@
 //! Widgets over plain data. They draw what they are given, return what the operator did, and
 //! compute nothing that takes longer than a frame.
 
+mod arrow_key;
 pub mod axis;
 pub mod bars;
 pub mod box_canvas;

@@ -23,18 +23,18 @@ pub enum Severity {
     Done,
     /// Look at it when you can.
     Warning,
-    /// Something did not work. Stays until it is dismissed.
+    /// Something did not work.
     Failed,
 }
 
 impl Severity {
-    /// How long a message stays on screen; `None` until dismissed.
-    fn lifetime(self) -> Option<Duration> {
-        match self {
-            Self::Info | Self::Done => Some(Duration::from_secs(5)),
-            Self::Warning => Some(Duration::from_secs(12)),
-            Self::Failed => None,
-        }
+    /// How long a message stays on screen; after that it is found in the list.
+    fn lifetime(self) -> Duration {
+        Duration::from_secs(match self {
+            Self::Info | Self::Done => 5,
+            Self::Warning => 12,
+            Self::Failed => 60,
+        })
     }
 
     fn sign(self, tokens: &Tokens) -> (Glyph, egui::Color32) {
@@ -56,8 +56,10 @@ pub struct Notification {
     pub severity: Severity,
     /// What happened and, if something is to be done, what.
     pub text: String,
-    /// When.
+    /// When, the last time.
     pub at: Instant,
+    /// How often it was said while it was on screen, or in a row.
+    pub times: u32,
     /// What it tells of, to be opened.
     pub file: Option<PathBuf>,
     dismissed: bool,
@@ -65,8 +67,15 @@ pub struct Notification {
 
 impl Notification {
     fn is_on_screen(&self, now: Instant) -> bool {
-        let age = now.saturating_duration_since(self.at);
-        !self.dismissed && self.severity.lifetime().is_none_or(|lifetime| age < lifetime)
+        !self.dismissed && now.saturating_duration_since(self.at) < self.severity.lifetime()
+    }
+
+    /// What it says, and how often that was said.
+    fn words(&self) -> String {
+        match self.times {
+            0 | 1 => self.text.clone(),
+            times => format!("{} ({times} times)", self.text),
+        }
     }
 }
 
@@ -78,17 +87,26 @@ pub struct Notifications {
 }
 
 impl Notifications {
-    /// Adds a message. One that repeats the newest replaces it.
+    /// Adds a message. One that repeats the newest, or one that is still on screen, takes its place and is
+    /// counted.
     pub fn push(&mut self, severity: Severity, text: impl Into<String>) {
-        self.push_at(severity, text, Instant::now());
+        self.repeat_at(severity, text, 1, Instant::now());
     }
 
-    /// As [`Self::push`], at a given time.
-    pub fn push_at(&mut self, severity: Severity, text: impl Into<String>, at: Instant) {
+    /// As [`Self::push`], for one that was said so many times.
+    pub fn repeat(&mut self, severity: Severity, text: impl Into<String>, times: u32) {
+        self.repeat_at(severity, text, times, Instant::now());
+    }
+
+    /// As [`Self::repeat`], at a given time.
+    pub fn repeat_at(&mut self, severity: Severity, text: impl Into<String>, times: u32, at: Instant) {
         let text = text.into();
-        if self.kept.back().is_some_and(|last| last.severity == severity && last.text == text) {
-            self.kept.pop_back();
-        }
+        let newest = self.kept.len().saturating_sub(1);
+        let is_same = |(i, known): &(usize, &Notification)| {
+            (*i == newest || known.is_on_screen(at)) && known.severity == severity && known.text == text
+        };
+        let same = self.kept.iter().enumerate().rev().find(is_same).map(|(i, _)| i);
+        let said = same.and_then(|i| self.kept.remove(i)).map_or(0, |known| known.times);
         if self.kept.len() == MOST_KEPT {
             self.kept.pop_front();
         }
@@ -97,6 +115,7 @@ impl Notifications {
             severity,
             text,
             at,
+            times: said.saturating_add(times),
             file: None,
             dismissed: false,
         });
@@ -153,7 +172,7 @@ impl Notifications {
         for number in dismissed {
             self.dismiss(number);
         }
-        let next_end = shown.iter().filter_map(|n| n.severity.lifetime().map(|l| n.at + l)).min();
+        let next_end = shown.iter().map(|n| n.at + n.severity.lifetime()).min();
         if let Some(end) = next_end {
             ctx.request_repaint_after(end.saturating_duration_since(now));
         }
@@ -178,7 +197,7 @@ impl Notifications {
                         egui::Label::new(theme::small(ui, age)).halign(egui::Align::LEFT),
                     );
                     ui.vertical(|ui| {
-                        ui.add(egui::Label::new(&notification.text).wrap());
+                        ui.add(egui::Label::new(notification.words()).wrap());
                         if notification.file.is_some() && ui.button("Open").clicked() {
                             opened.clone_from(&notification.file);
                         }
@@ -215,7 +234,9 @@ fn toast(ui: &mut Ui, notification: &Notification) -> ToastAsked {
             severity_sign(ui, notification.severity);
             let close = 64.0;
             ui.allocate_ui(vec2(WIDTH - 30.0 - close - space::S, 0.0), |ui| {
-                ui.add(egui::Label::new(RichText::new(&notification.text).color(tokens.text_strong)).wrap());
+                ui.add(
+                    egui::Label::new(RichText::new(notification.words()).color(tokens.text_strong)).wrap(),
+                );
             });
             ui.with_layout(egui::Layout::top_down(egui::Align::Max), |ui| {
                 let dismissed = ui.add(egui::Button::new(theme::small(ui, "Dismiss")).frame(false)).clicked();
@@ -238,17 +259,39 @@ mod tests {
     fn messages_leave_the_screen_but_not_the_history() {
         let start = Instant::now();
         let mut notifications = Notifications::default();
-        notifications.push_at(Severity::Info, "saved", start);
-        notifications.push_at(Severity::Failed, "camera lost", start);
+        notifications.repeat_at(Severity::Info, "saved", 1, start);
+        notifications.repeat_at(Severity::Failed, "camera lost", 1, start);
         let texts = |n: &Notifications, s: u64| {
             n.on_screen(start + Duration::from_secs(s)).map(|n| n.text.clone()).collect::<Vec<_>>()
         };
         assert_eq!(texts(&notifications, 1), ["saved", "camera lost"]);
-        assert_eq!(texts(&notifications, 3600), ["camera lost"]);
+        assert_eq!(texts(&notifications, 30), ["camera lost"], "what failed stays longer");
+        assert!(texts(&notifications, 61).is_empty(), "and leaves, too");
         let failed = notifications.history().next().expect("newest").number;
         notifications.dismiss(failed);
-        assert!(texts(&notifications, 3600).is_empty());
+        assert_eq!(texts(&notifications, 1), ["saved"]);
         assert_eq!(notifications.history().count(), 2);
+    }
+
+    #[test]
+    fn equal_messages_are_one_with_a_count_as_long_as_it_is_on_screen() {
+        let start = Instant::now();
+        let mut notifications = Notifications::default();
+        let mut say = |severity, text: &str, after_s: u64| {
+            notifications.repeat_at(severity, text, 1, start + Duration::from_secs(after_s));
+        };
+        say(Severity::Failed, "camera lost", 0);
+        say(Severity::Info, "saved", 1);
+        say(Severity::Failed, "camera lost", 40);
+        say(Severity::Warning, "camera lost", 41);
+        let at_s = |n: &Notifications, s: u64| {
+            n.on_screen(start + Duration::from_secs(s)).map(Notification::words).collect::<Vec<_>>()
+        };
+        assert_eq!(at_s(&notifications, 42), ["camera lost (2 times)", "camera lost"]);
+        assert_eq!(at_s(&notifications, 90), ["camera lost (2 times)"], "it counts from the last time");
+        notifications.repeat_at(Severity::Failed, "camera lost", 1, start + Duration::from_secs(300));
+        assert_eq!(at_s(&notifications, 301), ["camera lost"], "long after it is news again");
+        assert_eq!(notifications.history().count(), 4);
     }
 
     #[test]

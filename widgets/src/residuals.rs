@@ -65,6 +65,7 @@ mod tests {
             Mark::Arrow { from_px, vector_px, scale, .. } => Some((*from_px, *vector_px, *scale)),
             _ => None,
         });
+        assert_eq!(overlay.arrow_scale(), Some(1.0));
         let (from, vector, scale) = arrow.expect("one arrow");
         assert_eq!([from[0] + scale * vector[0], from[1] + scale * vector[1]], [100.0, 50.0]);
     }

@@ -48,6 +48,9 @@ fn numbers(figure: &Figure) -> String {
 }
 
 fn four_digits(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
     let digits = (3 - value.abs().max(1e-4).log10().floor() as i32).clamp(0, 5) as usize;
     format!("{value:.digits$}")
 }

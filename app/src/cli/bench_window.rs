@@ -16,6 +16,8 @@ struct FrameReport {
     frames: u64,
     median_ms: f64,
     percentile_95_ms: f64,
+    longest_ms: f64,
+    over_100_ms: u64,
     resident_before_mb: Option<f64>,
     resident_mb: Option<f64>,
     renderer: String,
@@ -30,6 +32,13 @@ pub fn figures(pairs: &Path) -> Vec<Figure> {
             let mut figures = vec![
                 figure(WHAT, report.percentile_95_ms, "ms", Some(16.0), &note),
                 figure("the same, half of the frames within", report.median_ms, "ms", None, &note),
+                figure(
+                    "the same, frames over 100 ms",
+                    report.over_100_ms as f64,
+                    "frames",
+                    Some(0.0),
+                    &format!("the longest took {:.1} ms", report.longest_ms),
+                ),
             ];
             if let (Some(before), Some(after)) = (report.resident_before_mb, report.resident_mb) {
                 let what = "the same, growth of memory in 20 s";

@@ -5,13 +5,14 @@ use std::path::PathBuf;
 
 use clap::Args;
 use plumbline_offline::{self as offline, GapArgs, GapReport};
-use plumbline_widgets::{format, parameter};
+use plumbline_widgets::{format, parameter, probability};
 
 use super::output::Output;
 use crate::operator::snapshot::gap::{
-    Comparison, CoordinateComparison, Finding, NamedEffect, NextExperiment, Shown, ShownUnit, Unexplained,
+    Candidate, Comparison, CoordinateComparison, Finding, NamedEffect, NextExperiment, Shown, ShownUnit,
+    Unexplained,
 };
-use crate::operator::words::gap::not_told;
+use crate::operator::words::{self, sentence};
 
 /// So many effects are written out, the others by their titles.
 const MOST_EFFECTS: usize = 3;
@@ -57,6 +58,9 @@ pub fn run(arguments: Gap, output: &Output) -> anyhow::Result<()> {
 fn text(report: &GapReport) -> String {
     let finding = &report.finding;
     let mut text = format!("{}\n", finding.sentence);
+    for warning in &finding.warnings {
+        text.push_str(&format!("Note: {}\n", sentence(warning)));
+    }
     compared(&mut text, &finding.comparison);
     found(&mut text, finding);
     shown(&mut text, &finding.shown, finding.comparison.is_noise_known());
@@ -64,12 +68,11 @@ fn text(report: &GapReport) -> String {
     if let Some(next) = &finding.next {
         next_experiment(&mut text, next);
     }
-    for warning in &finding.warnings {
-        text.push_str(&format!("Note: {warning}\n"));
-    }
     left_out(&mut text, finding);
     if !report.added.is_empty() {
-        text.push_str(&format!("Added to the model: {}\n", report.added.join(", ")));
+        let added: Vec<String> =
+            report.added.iter().map(|name| words::effect::of_effect(name, &finding.effects)).collect();
+        text.push_str(&format!("Added to the model: {}\n", added.join(", ")));
     }
     text.push_str(&format!("Searched for {}\n", format::ms(finding.seconds)));
     text
@@ -115,12 +118,12 @@ fn compared(text: &mut String, comparison: &Comparison) {
         "  {} noise deviations beyond the noise (noise from {}), p = {}\n",
         format::significant(comparison.size_sigmas, 2),
         comparison.floor_from().words(),
-        probability(comparison.p_value)
+        p_value(comparison.p_value)
     ));
 }
 
 /// Probabilities that are next to nothing are said so.
-fn probability(p: f64) -> String {
+fn p_value(p: f64) -> String {
     if p < 1e-4 { "less than 0.0001".to_owned() } else { format::significant(p, 2) }
 }
 
@@ -130,7 +133,7 @@ fn found(text: &mut String, finding: &Finding) {
     }
     text.push_str("\nFound:\n");
     for effect in finding.effects.iter().take(MOST_EFFECTS) {
-        one(text, effect);
+        one(text, effect, &finding.candidates);
     }
     let more: Vec<&str> =
         finding.effects.iter().skip(MOST_EFFECTS).map(|effect| effect.title.as_str()).collect();
@@ -139,15 +142,17 @@ fn found(text: &mut String, finding: &Finding) {
     }
 }
 
-fn one(text: &mut String, effect: &NamedEffect) {
-    let name =
-        if effect.site.is_empty() { effect.id.clone() } else { format!("{}@{}", effect.id, effect.site) };
+fn one(text: &mut String, effect: &NamedEffect, candidates: &[Candidate]) {
     let (told, zero): (Vec<_>, Vec<_>) = effect.parameters.iter().partition(|found| found.is_told());
-    let not_told = not_told(told.len(), zero.len());
-    text.push_str(&format!("  {} ({name}), {} sure\n", effect.title, format::percent(effect.probability)));
+    let not_told = words::effect::not_told(told.len(), zero.len());
+    text.push_str(&format!(
+        "  {}, {} sure\n",
+        words::capitalized(&effect.title),
+        probability::percent(effect.probability)
+    ));
     for found in told {
         let said = match &found.text {
-            Some(joint) => joint.clone(),
+            Some(text) => words::effect::choice(text),
             None => format!(
                 "{} ({}, 95 %)",
                 parameter::value(&found.name, found.value),
@@ -172,10 +177,8 @@ fn one(text: &mut String, effect: &NamedEffect) {
             text.push_str(&format!("    to tell them apart: {split}\n"));
         }
     }
-    if let Some((runner_up, margin)) = &effect.runner_up {
-        let odds = 10f64.powf(*margin);
-        let odds = if odds > 1e4 { "more than 10000".to_owned() } else { format::significant(odds, 2) };
-        text.push_str(&format!("    runner-up: {runner_up}, {odds} times less probable\n"));
+    if let Some(runner_up) = words::effect::runner_up(effect, candidates) {
+        text.push_str(&format!("    {runner_up}\n"));
     }
     if let Some(why) = &effect.not_addable {
         text.push_str(&format!("    cannot be added: {why}\n"));
@@ -222,7 +225,7 @@ fn shown(text: &mut String, shown: &Shown, is_noise_known: bool) {
 fn unexplained(text: &mut String, left: &Unexplained) {
     text.push_str(&format!(
         "\nUnexplained: p = {} that noise alone leaves the rest; {} that something outside of the library is at work\n",
-        probability(left.p_value),
+        p_value(left.p_value),
         format::percent(left.probability)
     ));
     for on in &left.depends_on {
@@ -257,5 +260,48 @@ fn left_out(text: &mut String, finding: &Finding) {
     }
     for (why, count) in reasons {
         text.push_str(&format!("Left out: {}, {why}\n", format::count(count, "row")));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::operator::snapshot::gap::sample;
+
+    fn said(finding: Finding) -> String {
+        let mut report = GapReport::of(finding);
+        report.added = report.finding.effects.iter().map(|e| format!("{}@{}", e.id, e.site)).collect();
+        text(&report)
+    }
+
+    #[test]
+    fn people_read_no_raw_ids() {
+        for finding in [sample::named(), sample::class(), sample::not_in_library(), sample::pixels()] {
+            let said = said(finding);
+            assert!(said.contains("Runner-up: "), "{said}");
+            for raw in ["@", "r_elbow_y", "r_shoulder_y", "joint-", "link-"] {
+                assert!(!said.contains(raw), "{raw} in {said}");
+            }
+        }
+    }
+
+    #[test]
+    fn warnings_stand_right_below_the_verdict() {
+        let mut finding = sample::named();
+        finding.warnings = vec!["there are too few repeats".to_owned()];
+        let said = said(finding);
+        let verdict_and_warning = said.lines().take(2).collect::<Vec<_>>().join(" ");
+        assert!(verdict_and_warning.ends_with("Note: There are too few repeats."), "{said}");
+    }
+
+    #[test]
+    fn at_most_three_effects_are_written_out_and_values_that_may_be_zero_are_counted() {
+        let crowded = said(sample::crowded());
+        assert!(crowded.contains("and 4 more: "), "{crowded}");
+        let mut finding = sample::named();
+        let parameter = &mut finding.effects[0].parameters[0];
+        (parameter.value, parameter.low, parameter.high) = (0.0123, -0.01, 0.0346);
+        let said = said(finding);
+        assert!(said.contains("Its size is not told from zero.") && !said.contains("0.705"), "{said}");
     }
 }

@@ -13,12 +13,16 @@ pub struct Grid {
     /// Session with localizations.csv: true places and estimates.
     #[arg(long, value_name = "DIR")]
     session: PathBuf,
+    /// Effects of the eyes that are undone in each place, in the ray and the disparity: a file that the window keeps, or
+    /// that gap has written.
+    #[arg(long, value_name = "FILE")]
+    rig_model: Option<PathBuf>,
 }
 
 /// Judges the places.
 pub fn run(arguments: Grid, output: &Output) -> anyhow::Result<()> {
-    let Grid { session } = arguments;
-    let report = offline::grid(&GridArgs { session }, output)?;
+    let Grid { session, rig_model } = arguments;
+    let report = offline::grid(&GridArgs { session, rig_model }, output)?;
     output.result(&report, text)
 }
 
@@ -29,6 +33,7 @@ fn text(report: &GridReport) -> String {
             "none" => "no correction",
             "pivot-published" => "pivot, as published",
             "pivot-fitted" => "pivot, fitted to these places",
+            "rig-model" => "effects of the rig model",
             _ => "pivot, each place by a fit to the others",
         };
         text.push_str(&format!(

@@ -44,5 +44,10 @@ fn text(report: &LerobotReport) -> String {
             "The recording has no calibration of the eyes: intrinsics and extrinsics are not in it.\n",
         );
     }
+    if !report.has_places {
+        text.push_str(
+            "The recording does not say how the head stood in each pair: where the eyes were in the robot is not in it.\n",
+        );
+    }
     text
 }

@@ -1,4 +1,4 @@
-//! The collected pairs: capture, delete last or any, undo.
+//! The collected pairs: capture, delete last or any.
 
 use egui::{Button, ScrollArea, Ui};
 use plumbline_engine::view::{CollectedPair, EyesView};
@@ -35,7 +35,6 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
 fn controls(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     ui.horizontal_wrapped(|ui| {
         action_button(ui, cx, Action::DeleteLast, "Delete last");
-        action_button(ui, cx, Action::Undo, "Undo");
         action_button(ui, cx, Action::DeleteAll, "Delete all");
         if cx.view.source.replay.is_none() {
             let mut by_itself = cx.view.eyes.auto_capture;
@@ -152,7 +151,7 @@ fn describe(pair: &CollectedPair, dropped: bool) -> String {
     let seen = |eye: Eye| {
         pair.corners(eye).map_or_else(
             || format!("{eye} eye: board not seen"),
-            |corners| format!("{eye} eye: {} corners", corners.iter().flatten().count()),
+            |corners| format!("{eye} eye: {}", format::count(corners.iter().flatten().count(), "corner")),
         )
     };
     let dropped = if dropped { "\nleft out of the next solution" } else { "" };

@@ -79,6 +79,7 @@ fn one_eye(
         .overlay(&overlay)
         .stale(stale)
         .size(size)
+        .crop()
         .show(ui, cx.state.views.entry((cx.screen, Pane::Rectified)).or_default());
     if eye == Eye::Left {
         take_probe(cx, shown.hover_px, shown.clicked_px);

@@ -37,7 +37,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         for eye in Eye::BOTH {
             let error_px = if eye == Eye::Left { fit.left_px } else { fit.right_px };
             let error = error_px.map_or("board not seen".to_owned(), format::px);
-            let label = format!("{eye} eye {error}, arrows {scale}×");
+            let label = format!("{eye} eye {error}");
             if look {
                 look_at_board(&mut cx.state.chosen[eye.index()], fit, eye, size);
             }

@@ -15,6 +15,7 @@ use super::ask::Ask;
 use super::dialogs::Question;
 use super::jogging::RENEW;
 use super::settings::ThemeChoice;
+use crate::operator::actions::undo::undo;
 use crate::operator::guidance::guidance;
 use crate::operator::{
     Action, CommissionAction, DetectAction, GapAction, GridAction, LabelsAction, ModelsAction, Outbox,
@@ -85,6 +86,7 @@ impl PlumblineWindow {
         }
         match action {
             Action::Stop => self.stop(),
+            Action::Undo => self.undo(),
             Action::Touch(TouchAction::ToggleWindow) => {
                 self.panels.touch.window_open = !self.panels.touch.window_open;
             }
@@ -246,7 +248,6 @@ impl PlumblineWindow {
             Action::ToggleAutoCapture => EyesCommand::AutoCapture(!self.view.eyes.auto_capture).into(),
             Action::CollectRecording => EyesCommand::CollectRecording.into(),
             Action::DeleteLast => EyesCommand::DeleteLast.into(),
-            Action::Undo => EyesCommand::Undo.into(),
             Action::Solve => EyesCommand::Solve.into(),
             Action::JudgeHealth => EyesCommand::JudgeHealth.into(),
             Action::Accept => EyesCommand::Accept.into(),
@@ -268,6 +269,18 @@ impl PlumblineWindow {
             Action::CancelJob => JobCommand::Cancel(self.view.running_job()?.id).into(),
             _ => return None,
         })
+    }
+
+    /// Takes back what was changed last on this screen, or says why there is nothing.
+    fn undo(&mut self) {
+        match undo(&self.view, self.settings.screen) {
+            Ok(undo) => {
+                // It may be the point that goes.
+                self.panels.models.tables.chosen = None;
+                self.send(undo.command);
+            }
+            Err(why) => self.notices.say(&format!("Undo: {why}.")),
+        }
     }
 
     /// The arm first; then jobs, replay, automatic capture and the tour of the board.

@@ -217,7 +217,8 @@ fn let_go(ui: &mut Ui) -> Asked {
 fn shorten_answers(ui: &mut Ui, view: &View) -> Asked {
     let slow = view.robot.bus.slow_answers;
     let about = format!(
-        "{slow} servos wait before each answer. They are told to answer at once, and keep that in their permanent memory (return delay). Nothing moves."
+        "Waiting before each answer: {}. They are told to answer at once, and keep that in their permanent memory (return delay). Nothing moves.",
+        format::count(slow, "servo")
     );
     title(ui, "Shorten the answers of servos?", &about);
     match buttons(ui, "Write it to the servos", slow > 0) {

@@ -34,9 +34,10 @@ impl PlumblineWindow {
         self.go_on_taking(ctx);
         self.log.refresh(self.settings.log_open);
         self.follow_the_work();
-        let next = self.script.next(&self.view, ctx);
-        if let Some(step) = next {
-            self.do_script_step(ctx, step);
+        match self.script.next(&self.view, ctx) {
+            Ok(Some(step)) => self.do_script_step(ctx, step),
+            Ok(None) => {}
+            Err(stuck) => self.script_stuck(&stuck),
         }
         self.poll_gamepad(ctx);
         // Ages and clocks move on although nothing else does.

@@ -10,7 +10,7 @@ use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::key_value::{KeyValue, big_figure, key_value_grid};
 use plumbline_widgets::theme::{self, Role, group_heading, space};
 
-use super::PlumblineWindow;
+use super::{PlumblineWindow, undo};
 use crate::operator::{Outbox, Screen, hint_text};
 use crate::panels::{
     PanelState, chosen_fit, probe_readout, show_commission_inspector, show_drift_inspector,
@@ -30,6 +30,7 @@ pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbo
     let (view, screen) = (std::sync::Arc::clone(&window.view), window.settings.screen);
     let state = &mut window.panels;
     panel.show_separator_line(false).show(ui, |ui| {
+        undo::show(&view, screen, ui, outbox);
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| match screen {
             Screen::Commission => show_commission_inspector(ui, &view, outbox),
             Screen::Live => live(ui, &view, state, outbox),

@@ -1,7 +1,7 @@
 //! Opening the window.
 
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Duration;
 
 use plumbline_engine::{Engine, EngineSettings, SourceCommand, SourceSpec};
@@ -58,6 +58,8 @@ pub fn launch(options: LaunchOptions) -> anyhow::Result<()> {
     let nothing_else = options.paths.is_empty() && options.cameras.is_none();
     let news_may_wait = chosen.news_may_wait();
     let native = native_options(&settings, chosen.renderer);
+    let script_failure = Arc::new(OnceLock::new());
+    let failure = script_failure.clone();
     // The closure runs once, but eframe's type cannot say so.
     let parts = Mutex::new(Some((settings, options)));
     let result = eframe::run_native(
@@ -73,6 +75,7 @@ pub fn launch(options: LaunchOptions) -> anyhow::Result<()> {
                 native_dialogs: options.script.is_empty(),
                 log,
                 script: options.script.clone(),
+                script_failure: failure,
                 frame_report: options.frame_report.clone(),
                 renderer: chosen.reason,
                 gamepads: options.script.is_empty(),
@@ -89,7 +92,12 @@ pub fn launch(options: LaunchOptions) -> anyhow::Result<()> {
         anyhow::anyhow!(
             "the window cannot be opened: {error}. Without a screen use the verbs (plumbline --help), or a virtual screen (xvfb-run plumbline)"
         )
-    })
+    })?;
+    // Whoever started the script reads what it returns.
+    match script_failure.get() {
+        Some(said) => Err(anyhow::anyhow!("{said}")),
+        None => Ok(()),
+    }
 }
 
 fn start_engine(ctx: &egui::Context, options: &LaunchOptions, news_may_wait: Duration) -> Engine {

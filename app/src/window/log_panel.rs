@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use egui::{Panel, RichText, ScrollArea, TextEdit, TextStyle, Ui};
 use log::Level;
+use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, Role, space};
 
 use super::log_lines::{LogLine, LogStore};
@@ -71,7 +72,7 @@ impl LogPanel {
                     let text: Vec<String> = chosen.iter().map(|line| line.text()).collect();
                     ui.ctx().copy_text(text.join("\n"));
                 }
-                ui.label(theme::small(ui, format!("{} lines", chosen.len())));
+                ui.label(theme::small(ui, format::count(chosen.len(), "line")));
             });
         });
     }

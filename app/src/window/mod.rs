@@ -49,11 +49,12 @@ mod tiles;
 mod touch_window;
 mod transport;
 mod truth_band;
+mod undo;
 mod world_menu;
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 use plumbline_engine::{JobId, Products, View};
@@ -94,6 +95,8 @@ pub struct WindowOptions {
     pub log: Arc<LogStore>,
     /// Things to do without an operator, for pictures and measurements.
     pub script: Vec<ScriptStep>,
+    /// Why the script came to no end, once it has not.
+    pub script_failure: Arc<OnceLock<String>>,
     /// Where the frame times are written at exit, as JSON.
     pub frame_report: Option<PathBuf>,
     /// Said in the frame times overlay and in the report.
@@ -112,6 +115,7 @@ impl Default for WindowOptions {
             native_dialogs: false,
             log: Arc::default(),
             script: Vec::new(),
+            script_failure: Arc::default(),
             frame_report: None,
             renderer: "none".to_owned(),
             gamepads: false,
@@ -142,6 +146,7 @@ pub struct PlumblineWindow {
     resident_before_mb: Option<f64>,
     renderer: String,
     script: Script,
+    script_failure: Arc<OnceLock<String>>,
     started: Instant,
     stopped_at: Option<Instant>,
     /// Where the tiles lay that were in front in the last frame.
@@ -198,6 +203,7 @@ impl PlumblineWindow {
             resident_before_mb: None,
             renderer: options.renderer,
             script: Script::new(options.script),
+            script_failure: options.script_failure,
             started: Instant::now(),
             stopped_at: None,
             tile_rects: BTreeMap::new(),

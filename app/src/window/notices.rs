@@ -22,6 +22,8 @@ const MOST_AWAITED: usize = 16;
 pub(super) struct NoticeList {
     shown: Notifications,
     newest: u64,
+    /// How often the newest one was said.
+    times: u32,
     unread: usize,
     history_open: bool,
     /// What the operator asked to be written and no message has told of yet.
@@ -29,23 +31,33 @@ pub(super) struct NoticeList {
 }
 
 impl NoticeList {
-    /// Adds the engine's messages that are new.
+    /// Adds the engine's messages that are new, and the newest one again when it was said again.
     pub(super) fn take(&mut self, notices: &Arc<[Notice]>) {
+        let again = notices.last().filter(|last| last.number == self.newest && last.times > self.times);
+        if let Some(last) = again {
+            let more = last.times - self.times;
+            self.times = last.times;
+            self.add(last, more);
+        }
         let first_new = notices.partition_point(|notice| notice.number <= self.newest);
         let new = &notices[first_new..];
         for notice in new {
-            self.newest = notice.number;
-            let severity = severity(notice.level);
-            if matches!(severity, Severity::Warning | Severity::Failed) {
-                self.unread += 1;
-            }
-            self.shown.push(severity, notice.text.as_str());
-            if severity == Severity::Done {
-                self.attach(&notice.text);
-            }
+            (self.newest, self.times) = (notice.number, notice.times);
+            self.add(notice, notice.times);
         }
         if new.len() > MOST_AT_ONCE {
             self.summarize(new.len());
+        }
+    }
+
+    fn add(&mut self, notice: &Notice, times: u32) {
+        let severity = severity(notice.level);
+        if matches!(severity, Severity::Warning | Severity::Failed) {
+            self.unread += 1;
+        }
+        self.shown.repeat(severity, notice.text.as_str(), times);
+        if severity == Severity::Done {
+            self.attach(&notice.text);
         }
     }
 
@@ -173,6 +185,22 @@ mod tests {
         assert_eq!((list.shown.history().count(), list.unread()), (3, 2));
         list.toggle_history();
         assert_eq!(list.unread(), 0);
+    }
+
+    #[test]
+    fn what_is_said_again_comes_back_with_its_count() {
+        let mut list = NoticeList::default();
+        let said =
+            |times: u32| -> Arc<[Notice]> { Arc::from([Notice { times, ..notice(1, NoticeLevel::Error) }]) };
+        list.take(&said(1));
+        let first = list.shown.history().next().expect("a message").number;
+        list.shown.dismiss(first);
+        list.take(&said(1));
+        assert_eq!((list.shown.on_screen(std::time::Instant::now()).count(), list.unread()), (0, 1));
+        list.take(&said(4));
+        let again = list.shown.on_screen(std::time::Instant::now()).next().expect("it is said again");
+        assert_eq!((again.times, list.unread()), (4, 2));
+        assert_eq!(list.shown.history().count(), 1);
     }
 
     #[test]

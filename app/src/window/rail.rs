@@ -39,7 +39,8 @@ fn steps(ui: &mut Ui, view: &View, screen: Screen, parts: bool, outbox: &mut Out
     if why(commission.selected(screen == Screen::Commission).show(ui), view, Screen::Commission).clicked() {
         outbox.act(Action::Go(Screen::Commission));
     }
-    if RailStep::new("Live", StepState::Always).selected(screen == Screen::Live).show(ui).clicked() {
+    let live = RailStep::new("Live", StepState::Always).selected(screen == Screen::Live).show(ui);
+    if why(live, view, Screen::Live).clicked() {
         outbox.act(Action::Go(Screen::Live));
     }
     let step = RailStep::new("Eyes", eyes_state(view)).number(1).selected(screen.is_eyes()).show(ui);
@@ -67,19 +68,19 @@ fn steps(ui: &mut Ui, view: &View, screen: Screen, parts: bool, outbox: &mut Out
     }
     ui.add_space(space::S);
     let drift = RailStep::new("Drift", drift_state(view)).selected(screen == Screen::Drift).show(ui);
-    if drift.clicked() {
+    if why(drift, view, Screen::Drift).clicked() {
         outbox.act(Action::Go(Screen::Drift));
     }
     let timeline = RailStep::new("Timeline", StepState::Always).selected(screen == Screen::Timeline);
-    if timeline.show(ui).clicked() {
+    if why(timeline.show(ui), view, Screen::Timeline).clicked() {
         outbox.act(Action::Go(Screen::Timeline));
     }
     let robot = RailStep::new("Robot", robot_state(view)).selected(screen == Screen::Robot).show(ui);
-    if robot.clicked() {
+    if why(robot, view, Screen::Robot).clicked() {
         outbox.act(Action::Go(Screen::Robot));
     }
     let detect = RailStep::new("Detect", detect_state(view)).selected(screen.is_detect()).show(ui);
-    if detect.clicked() && !screen.is_detect() {
+    if why(detect, view, Screen::Images).clicked() && !screen.is_detect() {
         outbox.act(Action::Go(Screen::Images));
     }
     if screen.is_detect() {
@@ -158,7 +159,7 @@ impl Part {
 }
 
 fn part_row(ui: &mut Ui, view: &View, part: Part, screen: Screen, outbox: &mut Outbox) {
-    row(ui, part.name(), part.value(&view.eyes), part.screen() == screen, part.screen(), outbox);
+    row(ui, view, part.name(), part.value(&view.eyes), (part.screen(), screen), outbox);
 }
 
 /// What belongs to "Detect".
@@ -168,11 +169,20 @@ fn detect_rows(ui: &mut Ui, view: &View, screen: Screen, outbox: &mut Outbox) {
         None => String::new(),
     };
     let scored = view.scores.table.as_ref().map(|table| format::count(table.rows.len(), "model"));
-    row(ui, "Images", labeled, screen == Screen::Images, Screen::Images, outbox);
-    row(ui, "Scores", scored.unwrap_or_default(), screen == Screen::Scores, Screen::Scores, outbox);
+    row(ui, view, "Images", labeled, (Screen::Images, screen), outbox);
+    row(ui, view, "Scores", scored.unwrap_or_default(), (Screen::Scores, screen), outbox);
 }
 
-fn row(ui: &mut Ui, name: &str, value: String, here: bool, target: Screen, outbox: &mut Outbox) {
+/// `target`: where a click leads; `open`: the screen that is open.
+fn row(
+    ui: &mut Ui,
+    view: &View,
+    name: &str,
+    value: String,
+    (target, open): (Screen, Screen),
+    outbox: &mut Outbox,
+) {
+    let here = target == open;
     let tokens = theme::tokens(ui);
     let (rect, response) =
         ui.allocate_exact_size(egui::vec2(ui.available_width(), 24.0), egui::Sense::click());
@@ -200,7 +210,7 @@ fn row(ui: &mut Ui, name: &str, value: String, here: bool, target: Screen, outbo
         small,
         tokens.text_weak,
     );
-    if response.clicked() {
+    if why(response, view, target).clicked() {
         outbox.act(Action::Go(target));
     }
 }

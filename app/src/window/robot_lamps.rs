@@ -26,12 +26,12 @@ pub(super) fn arm_state(robot: &RobotView) -> ArmState {
     }
     match robot.motion {
         // Until it is known to stand, it is said to move.
-        MotionState::Moving { .. } => ArmState::Moving,
+        MotionState::Moving { .. } if !robot.rests_on_the_way => ArmState::Moving,
         MotionState::Limp => ArmState::Free,
         MotionState::Unknown => ArmState::Unknown,
         _ if !robot.unknown.is_empty() => ArmState::PartlyKnown,
         _ if robot.stopped => ArmState::Stopped,
-        MotionState::Holding { .. } => ArmState::Held,
+        MotionState::Moving { .. } | MotionState::Holding { .. } => ArmState::Held,
     }
 }
 

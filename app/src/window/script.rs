@@ -6,8 +6,12 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use plumbline_engine::view::{Connection, MotionState, SourceStatus, StepState, TouchPhase};
-use plumbline_engine::{BoxEdit, Destination, LabelsCommand, ProbePoint, RobotCommand, View};
+use plumbline_engine::view::{
+    BetweenSteps, Connection, GraspStep, MotionState, SourceStatus, StepState, TouchPhase,
+};
+use plumbline_engine::{
+    BoxEdit, Command, Destination, GraspCommand, LabelsCommand, ProbePoint, RobotCommand, View,
+};
 use plumbline_model::Eye;
 use plumbline_model::robot::JointIndex;
 
@@ -15,6 +19,7 @@ use super::PlumblineWindow;
 use super::frame_time::{FrameTimes, resident_mb};
 use super::saving::save_picture;
 use super::script_step::ScriptStep;
+use crate::operator::{Action, GraspAction};
 
 /// The steps that are left.
 #[derive(Debug)]
@@ -23,6 +28,20 @@ pub(super) struct Script {
     not_before: Instant,
     quiet_since: Option<Instant>,
     pub(super) waiting_for_picture: Arc<AtomicBool>,
+}
+
+/// A script that waits for what does not go on by itself.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "The script ends: the grasp waits at \"Stop after each step\" after {}, before {}, and no step of the script that is left goes on with it. Turn that switch off, or write grasp:resume where it waits.",
+    .done.title().to_lowercase(),
+    .next.title().to_lowercase()
+)]
+pub(super) struct ScriptStuck {
+    done: GraspStep,
+    next: GraspStep,
+    /// Whether nobody is there: the script would have closed the window.
+    quits: bool,
 }
 
 /// How long nothing may be running before the next step is taken.
@@ -35,11 +54,57 @@ impl Script {
     }
 
     /// The next step, once everything before it has come to rest.
-    pub(super) fn next(&mut self, view: &View, ctx: &egui::Context) -> Option<ScriptStep> {
-        self.steps.front()?;
+    ///
+    /// # Errors
+    /// When it never will: why, a sentence.
+    pub(super) fn next(
+        &mut self,
+        view: &View,
+        ctx: &egui::Context,
+    ) -> Result<Option<ScriptStep>, ScriptStuck> {
+        if self.steps.is_empty() {
+            return Ok(None);
+        }
         ctx.request_repaint_after(Duration::from_millis(100));
-        let now = Instant::now();
-        let busy = view.running_job().is_some()
+        self.due(view, Instant::now())
+    }
+
+    fn due(&mut self, view: &View, now: Instant) -> Result<Option<ScriptStep>, ScriptStuck> {
+        // Work that waits for an answer is not waited for.
+        let between = view.grasp.between();
+        let busy = between.is_none() && Self::is_busy(view)
+            || self.waiting_for_picture.load(Ordering::Relaxed)
+            || now < self.not_before;
+        if busy {
+            self.quiet_since = None;
+            return Ok(None);
+        }
+        if now.duration_since(*self.quiet_since.get_or_insert(now)) < QUIET {
+            return Ok(None);
+        }
+        self.quiet_since = None;
+        if let Some(between) = between.filter(|_| !self.steps.iter().any(answers_a_hold)) {
+            return Err(self.stuck(between));
+        }
+        let step = self.steps.pop_front();
+        match step {
+            Some(ScriptStep::Wait(time)) => {
+                self.not_before = now.checked_add(time).unwrap_or(now);
+                Ok(None)
+            }
+            step => Ok(step),
+        }
+    }
+
+    /// A script that knows nothing of holds would wait for ever. What is left of it is its end, if it has one.
+    fn stuck(&mut self, between: BetweenSteps) -> ScriptStuck {
+        self.steps.retain(|step| *step == ScriptStep::Quit);
+        self.steps.truncate(1);
+        ScriptStuck { done: between.done, next: between.next, quits: !self.steps.is_empty() }
+    }
+
+    fn is_busy(view: &View) -> bool {
+        view.running_job().is_some()
             || matches!(view.robot.connection, Connection::Connecting { .. })
             || matches!(view.robot.motion, MotionState::Moving { .. })
             || matches!(view.touch.phase, TouchPhase::Running { .. } | TouchPhase::Planning)
@@ -49,28 +114,33 @@ impl Script {
             || view.scores.evaluating.is_some()
             || view.mount.step == StepState::Running
             || view.source.status == SourceStatus::Opening
-            || self.waiting_for_picture.load(Ordering::Relaxed)
-            || now < self.not_before;
-        if busy {
-            self.quiet_since = None;
-            return None;
-        }
-        if now.duration_since(*self.quiet_since.get_or_insert(now)) < QUIET {
-            return None;
-        }
-        self.quiet_since = None;
-        let step = self.steps.pop_front();
-        match step {
-            Some(ScriptStep::Wait(time)) => {
-                self.not_before = now.checked_add(time).unwrap_or(now);
-                None
-            }
-            step => step,
-        }
     }
 }
 
+/// Whether a step lets a grasp go on that waits after one of its own, or ends it.
+fn answers_a_hold(step: &ScriptStep) -> bool {
+    matches!(
+        step,
+        ScriptStep::Send(Command::Grasp(GraspCommand::Resume | GraspCommand::End))
+            | ScriptStep::Act(Action::Grasp(GraspAction::Resume | GraspAction::End))
+    )
+}
+
 impl PlumblineWindow {
+    /// A script that waits for ever is told of; where nobody is there the grasp is ended, and the window closes when
+    /// that is on disk.
+    pub(super) fn script_stuck(&mut self, stuck: &ScriptStuck) {
+        let said = stuck.to_string();
+        if stuck.quits {
+            self.send(GraspCommand::End.into());
+        }
+        // Told once, however long the end of the grasp takes.
+        if self.script_failure.set(said.clone()).is_ok() {
+            log::error!("{said}");
+            self.notices.say_failed(&said);
+        }
+    }
+
     /// Does one step.
     pub(super) fn do_script_step(&mut self, ctx: &egui::Context, step: ScriptStep) {
         match step {
@@ -124,5 +194,69 @@ impl PlumblineWindow {
     fn joint_called(&self, name: &str) -> Option<JointIndex> {
         let found = self.view.robot.rig.as_ref()?.description.find_joint(name);
         found.inspect_err(|error| log::warn!("{error}")).ok()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use plumbline_engine::view::{GraspPhase, GraspRun, GraspView, RobotView};
+
+    use super::*;
+
+    /// A grasp that waits after its approach.
+    fn waits() -> View {
+        let between = Some(BetweenSteps { done: GraspStep::Approach, next: GraspStep::Align });
+        let run = Some(Arc::new(GraspRun { between, ..GraspRun::default() }));
+        let phase = GraspPhase::Grasping { paused: true, ending: false };
+        let motion = MotionState::Moving { what: "grasping".to_owned(), fraction: None, remaining: None };
+        let grasp = Arc::new(GraspView { phase, run, ..GraspView::default() });
+        let robot = Arc::new(RobotView { motion, ..RobotView::default() });
+        View { grasp, robot, ..View::default() }
+    }
+
+    fn script(steps: &[&str]) -> Script {
+        Script::new(steps.iter().map(|step| step.parse().expect("a step")).collect())
+    }
+
+    /// What comes once all has been at rest for long enough.
+    fn after_a_while(script: &mut Script, view: &View) -> Result<Option<ScriptStep>, ScriptStuck> {
+        let now = Instant::now();
+        assert_eq!(script.due(view, now), Ok(None), "a moment says nothing");
+        script.due(view, now + QUIET)
+    }
+
+    #[test]
+    fn a_script_whose_grasp_waits_after_a_step_ends_and_says_which_step_waits() {
+        let mut script = script(&["picture:held.png", "robot-move", "quit"]);
+        let stuck = after_a_while(&mut script, &waits()).expect_err("it would wait for ever");
+        let said = stuck.to_string();
+        assert!(said.contains("after approach, before align"), "{said}");
+        assert!(said.contains("grasp:resume"), "{said}");
+        assert!(stuck.quits);
+        assert_eq!(script.steps, [ScriptStep::Quit], "it closes the window when the grasp has ended");
+        let mut open = self::script(&["grasp:plan"]);
+        assert!(!after_a_while(&mut open, &waits()).expect_err("it ends, too").quits);
+        assert!(open.steps.is_empty(), "whoever looks at the window decides");
+    }
+
+    #[test]
+    fn a_script_that_goes_on_with_it_does_so_step_by_step() {
+        let mut script = script(&["picture:held.png", "grasp:resume", "quit"]);
+        let picture = ScriptStep::Picture("held.png".into());
+        assert_eq!(after_a_while(&mut script, &waits()), Ok(Some(picture)));
+        let resume = ScriptStep::Send(GraspCommand::Resume.into());
+        assert_eq!(after_a_while(&mut script, &waits()), Ok(Some(resume)));
+        let stuck = after_a_while(&mut script, &waits()).expect_err("it waits once more");
+        assert!(stuck.to_string().contains("before align"), "{stuck}");
+    }
+
+    #[test]
+    fn while_something_is_under_way_it_waits() {
+        let mut view = waits();
+        Arc::make_mut(&mut view.grasp).run = None;
+        let mut script = script(&["quit"]);
+        assert_eq!(after_a_while(&mut script, &view), Ok(None), "it moves");
+        Arc::make_mut(&mut view.robot).motion = MotionState::Holding { why: None };
+        assert_eq!(after_a_while(&mut script, &view), Ok(Some(ScriptStep::Quit)));
     }
 }

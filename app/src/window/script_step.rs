@@ -72,7 +72,7 @@ impl ScriptStep {
 }
 
 /// What `--help` says before it lists the actions.
-const HELP: &str = r#"Does things without an operator, one after the other, each once the one before is done. A step is NAME or NAME:VALUE, the value being JSON or plain text; steps are separated by semicolons.
+const HELP: &str = r#"Does things without an operator, one after the other, each once the one before is done. A step is NAME or NAME:VALUE, the value being JSON or plain text; steps are separated by semicolons. A grasp that waits at "Stop after each step" is gone on with by grasp:resume; a script without that step ends there, says which step waits, and fails.
 
 Of the window: wait:SECONDS, picture:FILE, quit, measure, show:PANE (gap-names, model-map, label-checks, …), errors:before (after, both), probe:U,V, pair:N, object:CLASS, joint:NAME, preview-joint:"NAME",DEGREES, draw-box:CLASS,[X0,Y0,X1,Y1], choose-box:N.
 

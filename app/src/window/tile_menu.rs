@@ -1,6 +1,7 @@
 //! What can be taken out of a tile, any tile: copied or saved as image, CSV and PDF.
 
 use egui::{Button, Layout, Ui, WidgetInfo};
+use plumbline_widgets::format;
 use plumbline_widgets::texture::Picture;
 use plumbline_widgets::theme;
 
@@ -43,7 +44,8 @@ fn entries(ui: &mut Ui, picture: Option<&Picture>, table: Option<Table>) -> Opti
     }
     entry(ui, "Copy as image", "The tile as it stands here", Some(Taken::CopyImage));
     let rows = table.as_ref().map(|table| table.rows.len());
-    let about = rows.map_or_else(|| none.to_owned(), |rows| format!("{rows} rows, for a spreadsheet"));
+    let about = rows
+        .map_or_else(|| none.to_owned(), |rows| format!("{}, for a spreadsheet", format::count(rows, "row")));
     entry(ui, "Copy as CSV", &about, table.clone().map(Taken::CopyTable));
     ui.separator();
     if let Some(picture) = picture {

@@ -1,7 +1,7 @@
 //! Playing a recording.
 
 use egui::{Button, DragValue, Panel, Slider, Ui};
-use plumbline_engine::view::{ReplayView, SourceStatus};
+use plumbline_engine::view::{Growth, ReplayView, SourceStatus};
 use plumbline_engine::{SourceCommand, View};
 use plumbline_widgets::theme::{self, space};
 
@@ -47,6 +47,12 @@ fn contents(ui: &mut Ui, view: &View, replay: ReplayView, outbox: &mut Outbox) {
         let mut looping = replay.looping;
         if ui.checkbox(&mut looping, "Loop").changed() {
             outbox.send(SourceCommand::Loop(looping));
+        }
+        let mut followed = replay.growth == Growth::Followed;
+        let is_written = replay.growth != Growth::Ended;
+        let hint = "It is still being written: stay at its end, and see what comes.";
+        if is_written && ui.checkbox(&mut followed, "Follow").on_hover_text(hint).changed() {
+            outbox.send(SourceCommand::Follow(followed));
         }
         let mut rate = replay.pairs_per_second.unwrap_or(30.0);
         let drag = DragValue::new(&mut rate).range(0.2..=120.0).speed(0.2).max_decimals(1).suffix(" pairs/s");

@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use plumbline_model::robot::{Posture, Rig};
-use plumbline_model::session::{Chain, Manifest, RigReference, TouchRow, TouchTable};
+use plumbline_model::session::{Chain, Manifest, TouchRow, TouchTable};
 use plumbline_model::{Pixel, Point, Session};
 
 /// Nothing that is asked for here takes longer, also on a busy machine.
@@ -216,22 +216,13 @@ fn session() -> Session {
         }
     }
     let names: Vec<String> = JOINTS.map(str::to_owned).to_vec();
-    Session {
-        manifest: Manifest {
-            rig: RigReference::Named("nico".to_owned()),
-            started: "2026-05-01T10:00:00Z".parse().expect("a time"),
-            operator: String::new(),
-            notes: "made up".to_owned(),
-            touchscreen: Some(screen),
-            chain: Some(Chain { tip: TIP.to_owned(), joints: names.clone() }),
-            extra: Default::default(),
-        },
-        touches: Some(TouchTable::from_rows(names, &rows)),
-        localizations: None,
-        poses: None,
-        stereo: Default::default(),
-        log: None,
-    }
+    let manifest = Manifest {
+        notes: "made up".to_owned(),
+        touchscreen: Some(screen),
+        chain: Some(Chain { tip: TIP.to_owned(), joints: names.clone() }),
+        ..Manifest::of_rig("nico", "2026-05-01T10:00:00Z".parse().expect("a time"))
+    };
+    Session { touches: Some(TouchTable::from_rows(names, &rows)), ..Session::new(manifest) }
 }
 
 /// Numbers that are the same in every run.

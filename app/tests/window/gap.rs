@@ -1,6 +1,8 @@
 //! The gap: every state is drawn, with one button named by what it does, and every button asks for
 //! what it says.
 
+use std::sync::Arc;
+
 use egui_kittest::Harness;
 use plumbline::{PlumblineWindow, Screen, ThemeChoice, WindowSettings};
 use plumbline_engine::gap::sample;
@@ -8,7 +10,7 @@ use plumbline_engine::{Command, Correction, GapCommand, GapModel, TouchCommand, 
 use plumbline_model::touch_plan::Purpose;
 
 use crate::fake::{Fake, click, says, shows};
-use crate::made_up_gap::{added, failed, found, nothing, recorded, searching, stale, with};
+use crate::made_up_gap::{added, failed, found, nothing, proven, recorded, searching, stale, with};
 
 fn on_gap() -> WindowSettings {
     WindowSettings { screen: Screen::Gap, ..WindowSettings::default() }
@@ -190,8 +192,6 @@ fn a_stale_finding_cannot_be_added() {
 fn what_was_added_is_in_the_top_line_and_can_be_taken_back() {
     let (fake, mut window) = window_of(with(added()));
     assert!(says(&window, "nominal + 2 effects"));
-    press_next(&mut window, "Find what is left");
-    assert_eq!(asked(&fake), [GapCommand::Find { seed: 1 }]);
     click(&mut window, "History");
     assert!(shows(&window, "Side by side"));
     click(&mut window, "Back to the model before");
@@ -199,11 +199,11 @@ fn what_was_added_is_in_the_top_line_and_can_be_taken_back() {
 }
 
 #[test]
-fn what_was_added_is_proven_by_touching_with_and_without_it() {
+fn after_adding_the_next_step_is_to_prove_it_by_touching_with_and_without_the_effects() {
     let (fake, mut window) = window_of(with(added()));
     click(&mut window, "Name and add");
     fake.take_sent();
-    click(&mut window, "Prove it");
+    press_next(&mut window, "Prove it");
     let sent = fake.take_sent();
     let corrected = Command::Touch(TouchCommand::CorrectWith(Some(Correction::Effects)));
     assert_eq!(sent.first(), Some(&corrected), "{sent:?}");
@@ -214,6 +214,43 @@ fn what_was_added_is_proven_by_touching_with_and_without_it() {
     let (_, mut window) = window_of(with(nothing()));
     click(&mut window, "Name and add");
     assert!(!shows(&window, "Prove it"));
+}
+
+#[test]
+fn without_a_robot_that_could_touch_the_next_step_is_to_find_what_is_left() {
+    let (fake, mut window) = window_of(View { robot: Arc::default(), ..with(added()) });
+    press_next(&mut window, "Find what is left");
+    assert_eq!(asked(&fake), [GapCommand::Find { seed: 1 }]);
+}
+
+#[test]
+fn what_the_touches_prove_is_the_headline() {
+    let (fake, mut window) = window_of(proven(0.001_2));
+    assert!(says(&window, "Proven: the effects take 80 % of the error away. 20 touches: 6.00 mm"));
+    click(&mut window, "Name and add");
+    assert!(shows(&window, "Proven: the effects take 80 % of the error away."));
+    press_next(&mut window, "Find what is left");
+    assert_eq!(asked(&fake), [GapCommand::Find { seed: 1 }]);
+    let (_, window) = window_of(proven(0.005_5));
+    assert!(says(&window, "cannot be told whether the effects help") && !says(&window, "Proven"));
+}
+
+#[test]
+fn effects_that_touches_speak_against_are_taken_out_next() {
+    let (fake, mut window) = window_of(proven(0.012));
+    assert!(says(&window, "With the effects it misses by more"));
+    press_next(&mut window, "Take all effects out");
+    assert_eq!(asked(&fake), [GapCommand::UseNominal]);
+}
+
+#[test]
+fn touches_of_before_the_model_was_changed_prove_nothing_of_it() {
+    let mut view = proven(0.001_2);
+    let gap = Arc::make_mut(&mut view.gap);
+    let changed = gap.model.history.last_mut().expect("a step");
+    changed.at = "2026-09-14T13:00:00Z".parse().expect("a time");
+    let (_, window) = window_of(view);
+    assert!(!says(&window, "Proven"));
 }
 
 #[test]

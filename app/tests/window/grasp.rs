@@ -4,18 +4,19 @@ use std::sync::Arc;
 
 use egui::{Modifiers, Pos2, vec2};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use nalgebra::Point3;
 use plumbline::{PlumblineWindow, Screen, WindowSettings};
 use plumbline_engine::view::{
-    BetweenSteps, GraspHand, GraspMethod, GraspPhase, GraspRun, GraspStep, GraspView, LampState,
+    BetweenSteps, GraspHand, GraspMethod, GraspPhase, GraspRun, GraspStep, GraspView, LampState, MotionState,
+    RobotView,
 };
 use plumbline_engine::{Command, GraspCommand, GraspTarget, View};
 use plumbline_model::frame::Point;
 use plumbline_widgets::scene3d::SceneCamera;
 
 use crate::fake::{Fake, click, says, shows};
-use crate::made_up::everything;
+use crate::made_up::{connected, everything};
 
 /// In front of everything else for who looks at the scene from where it is looked at first, m.
 const TOMATO_M: [f64; 3] = [0.55, -0.25, 0.084];
@@ -81,6 +82,33 @@ fn with_the_switch_turned_off_meanwhile_the_button_goes_on_to_the_end() {
     assert!(says(&window, "All that comes after follows without a stop."));
     click(&mut window, "Go on");
     assert_eq!(fake.take_sent(), [Command::from(GraspCommand::Resume)]);
+}
+
+/// What STOP says of the arm.
+fn said_of_the_arm(window: &Harness<'_, PlumblineWindow>) -> Option<String> {
+    window.get_by_label("STOP").accesskit_node().value()
+}
+
+#[test]
+fn above_the_button_of_a_grasp_that_holds_the_arm_is_not_said_to_move() {
+    let motion = MotionState::Moving { what: "grasping".to_owned(), fraction: None, remaining: None };
+    let moving = RobotView { motion, ..connected() };
+    for (rests_on_the_way, said) in [(true, "arm held"), (false, "arm moving")] {
+        let robot = Arc::new(RobotView { rests_on_the_way, ..moving.clone() });
+        let fake = Fake::over(View { robot, ..with(held(true)) });
+        let mut window = on_grasp(&fake);
+        assert_eq!(said_of_the_arm(&window).as_deref(), Some(said));
+        assert!(says(&window, "the arm holds"));
+        // It goes on moving by itself or by a click: Esc stops it, as always.
+        window.key_press(egui::Key::Escape);
+        window.run_steps(2);
+        assert!(fake.take_stops() > 0);
+    }
+    // Which joint is not known comes before that it stands.
+    let unknown = Arc::from([moving.joints[0].joint]);
+    let robot = Arc::new(RobotView { rests_on_the_way: true, unknown, ..moving });
+    let window = on_grasp(&Fake::over(View { robot, ..with(held(true)) }));
+    assert_eq!(said_of_the_arm(&window).as_deref(), Some("arm partly known"));
 }
 
 /// A toy stands on the twin's table, in sight.

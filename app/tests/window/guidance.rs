@@ -16,8 +16,14 @@ fn on(screen: Screen) -> WindowSettings {
 }
 
 fn folder_of(length: u64) -> Arc<SourceView> {
-    let replay =
-        ReplayView { position: Some(0), length, playing: true, looping: true, pairs_per_second: Some(4.0) };
+    let replay = ReplayView {
+        position: Some(0),
+        length,
+        playing: true,
+        looping: true,
+        pairs_per_second: Some(4.0),
+        growth: Default::default(),
+    };
     Arc::new(SourceView {
         description: format!("{length} pairs in board"),
         status: SourceStatus::Running,

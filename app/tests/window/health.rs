@@ -143,6 +143,7 @@ fn a_proposal_that_is_better_or_was_not_judged_is_offered() {
         HealthState::NotAsked,
         judged(0.04, Some((0.002, ProposalHealth::Better))),
         judged(0.04, Some((0.04, ProposalHealth::Untold))),
+        judged(0.004, Some((0.004, ProposalHealth::KnowsWhen))),
     ] {
         let fake = Fake::over(with(state));
         let mut window = fake.window(on(Screen::Accept));

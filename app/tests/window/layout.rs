@@ -5,8 +5,9 @@ use egui::epaint::{ClippedShape, Shape, TextShape};
 use egui::{Rect, Vec2};
 use plumbline::{PlumblineWindow, Screen, ThemeChoice, WindowSettings};
 use plumbline_engine::View;
+use plumbline_engine::gap::{Finding, sample};
 
-use crate::fake::Fake;
+use crate::fake::{Fake, click};
 use crate::{
     made_up, made_up_gap, made_up_labels, made_up_models, made_up_objects, made_up_touch, timeline, truth,
 };
@@ -154,4 +155,65 @@ fn no_text_is_cut_or_covered_where_there_is_much_to_show() {
         }
     }
     assert_none(&all);
+}
+
+/// What the usual laptop and a small one leave of the screen.
+const LAPTOPS: [[f32; 2]; 2] = [[1280.0, 800.0], [1024.0, 700.0]];
+
+/// The finding with the longest words and the widest numbers that an effect can have.
+fn with_wide_values() -> Finding {
+    let mut finding = sample::named();
+    let effect = &mut finding.effects[0];
+    effect.title =
+        "Right shoulder swing: bracket gives way under load, the further the arm reaches".to_owned();
+    let of = effect.parameters[0].clone();
+    let names = ["rot_b_rad", "give_rad_per_nm", "bow_v_per_m", "time_constant_s"];
+    effect.parameters = names.map(|_| of.clone()).to_vec();
+    for (parameter, name) in effect.parameters.iter_mut().zip(names) {
+        parameter.name = name.to_owned();
+        (parameter.value, parameter.low, parameter.high) = (-0.0123, -0.0143, -0.0101);
+    }
+    effect.runner_up = Some(("joint-eccentricity@r_shoulder_y".to_owned(), 6.0));
+    finding.warnings =
+        vec!["there are too few repeats: the noise was estimated from near neighbors".to_owned()];
+    finding
+}
+
+/// Everything on the screen of the gap with one of its tabs in front.
+fn cut_on_tab(view: &View, tab: &str, size: [f32; 2]) -> Vec<String> {
+    let settings =
+        WindowSettings { theme: ThemeChoice::Light, screen: Screen::Gap, ..WindowSettings::default() };
+    let mut window = Fake::over(view.clone()).window_of_size(settings, size);
+    click(&mut window, tab);
+    window.run_steps(2);
+    let lines = lines(&window);
+    assert!(lines.len() > 10, "{tab} draws texts");
+    cut(&lines).iter().map(|fault| format!("{tab} {size:?}: {fault}")).collect()
+}
+
+#[test]
+fn cards_of_effects_are_cut_nowhere() {
+    let findings = [
+        sample::named(),
+        sample::class(),
+        sample::not_in_library(),
+        sample::crowded(),
+        sample::pixels(),
+        with_wide_values(),
+    ];
+    let found = findings.into_iter().map(|finding| made_up_gap::with(made_up_gap::found(finding)));
+    let views = found.chain([made_up_gap::with(made_up_gap::added()), made_up_gap::proven(0.001_2)]);
+    let mut all = Vec::new();
+    for view in views {
+        for size in LAPTOPS {
+            all.extend(cut_on_tab(&view, "Name and add", size));
+        }
+    }
+    assert_none(&all);
+}
+
+#[test]
+fn two_findings_side_by_side_are_cut_nowhere() {
+    let view = made_up_gap::with(made_up_gap::added());
+    assert_none(&cut_on_tab(&view, "History", LAPTOPS[0]));
 }

@@ -6,11 +6,13 @@ use std::sync::Arc;
 use plumbline_engine::gap::{Finding, ShownUnit, sample};
 use plumbline_engine::view::{
     AddedEffect, FindingEntry, GapModelView, GapSession, GapView, JobState, JobView, ModelStep, ShownFinding,
-    StepState,
+    StepState, TouchFigures, TouchPhase, TouchView,
 };
 use plumbline_engine::{JobId, View};
+use plumbline_model::touch_plan::PlanOptions;
 
 use crate::made_up::{everything, rig};
+use crate::made_up_touch;
 
 /// The view of one state of the gap.
 pub fn with(gap: GapView) -> View {
@@ -129,6 +131,8 @@ pub fn added() -> GapView {
         name: format!("{}@{}", effect.id, effect.site),
         title: effect.title.clone(),
         parameters: effect.parameters.iter().map(|p| (p.name.clone(), p.value, [p.low, p.high])).collect(),
+        is_of_eyes: false,
+        moved_m: Some(effect.size_m),
     });
     let step = |title: &str, at: &str, errors| ModelStep {
         at: at.parse().expect("a time"),
@@ -142,8 +146,12 @@ pub fn added() -> GapView {
         name: "nominal + 2 effects".to_owned(),
         effects: effects.collect(),
         history: vec![
-            step("joint-zero@r_elbow_y added", "2026-09-13T16:10:00Z", [6.71e-3, 4.32e-3, 3.02e-3]),
-            step("joint-sag@r_shoulder_y added", "2026-09-14T11:04:00Z", [4.32e-3, 3.58e-3, 3.02e-3]),
+            step("Elbow: zero position off added", "2026-09-13T16:10:00Z", [6.71e-3, 4.32e-3, 3.02e-3]),
+            step(
+                "Shoulder, forward: bracket gives way under load added",
+                "2026-09-14T11:04:00Z",
+                [4.32e-3, 3.58e-3, 3.02e-3],
+            ),
         ],
         can_undo: true,
     };
@@ -158,4 +166,29 @@ pub fn added() -> GapView {
         model,
         ..recorded()
     }
+}
+
+/// New targets were touched with the effects of the model and without them: 6 mm beside, and so far with them.
+pub fn proven(with_m: f64) -> View {
+    let figures = |mean_m: f64| TouchFigures {
+        count: 10,
+        mean_m,
+        mean_interval_m: [0.8 * mean_m, 1.2 * mean_m],
+        largest_m: 2.0 * mean_m,
+        bias_m: [0.0; 2],
+        noise_m: None,
+        repeats: 0,
+    };
+    let run = session("2026-09-14T12-00-00_touch", "2026-09-14T12:00:00Z", 20);
+    let touch = TouchView {
+        phase: TouchPhase::Finished,
+        figures: Some(figures(with_m)),
+        figures_described: Some(figures(0.006)),
+        session: Some(run.folder.clone()),
+        ..made_up_touch::planned(PlanOptions::prove(made_up_touch::area(), 10, 1))
+    };
+    let mut gap = added();
+    gap.chosen = Arc::from([run.folder.clone()]);
+    gap.sessions = std::iter::once(run).chain(gap.sessions.iter().cloned()).collect();
+    View { touch: Arc::new(touch), ..with(gap) }
 }

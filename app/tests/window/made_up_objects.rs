@@ -145,6 +145,7 @@ pub fn live(detect: DetectView) -> View {
         right: picture,
         time_difference_s: None,
         name: None,
+        beside: Default::default(),
     };
     View {
         source: Arc::new(SourceView {

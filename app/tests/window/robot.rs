@@ -294,6 +294,25 @@ fn an_own_pose_is_deleted_at_the_second_click() {
     assert_eq!(robot_commands(&fake), [RobotCommand::DeletePose { name: "own-1".to_owned() }]);
 }
 
+#[test]
+fn what_was_lost_is_looked_for_where_it_was() {
+    let lost = Connection::Lost {
+        to: "twin \"lab\"".to_owned(),
+        reason: "The port is gone: plug it in.".to_owned(),
+    };
+    let scan = "Look for servos again";
+    for (connection, offered) in [(lost, true), (Connection::None, false)] {
+        let fake = Fake::over(with_robot(RobotView { connection, ..connected() }));
+        let mut window = fake.window(on_robot());
+        assert_eq!(shows(&window, "Bus lost"), offered);
+        if offered {
+            click(&mut window, "Bus lost");
+            click(&mut window, scan);
+            assert_eq!(robot_commands(&fake), [RobotCommand::Scan]);
+        }
+    }
+}
+
 /// Every state of the connection, with what has to be said in it.
 fn states() -> Vec<(&'static str, View, &'static str)> {
     let rig = connected().rig;
@@ -314,6 +333,8 @@ fn states() -> Vec<(&'static str, View, &'static str)> {
             joint
         })
         .collect();
+    let motion = MotionState::Moving { what: "grasping".to_owned(), fraction: None, remaining: None };
+    let paused = RobotView { motion, rests_on_the_way: true, ..connected() };
     vec![
         ("none", with_robot(bare(Connection::None)), "No robot is connected"),
         ("connecting", with_robot(bare(connecting)), "looking for servos"),
@@ -322,6 +343,7 @@ fn states() -> Vec<(&'static str, View, &'static str)> {
         ("stale", with_robot(stale), "Last reading 4 s ago"),
         ("no-rig", with_robot(RobotView::default()), "description cannot be read"),
         ("holding", everything(), "it is shown first"),
+        ("paused", with_robot(paused), "Paused in the middle of grasping: the arm holds."),
         ("limp", with_robot(RobotView { motion: MotionState::Limp, ..connected() }), "The joints are limp"),
         (
             "preview",

@@ -23,6 +23,7 @@ fn everything_runs() -> View {
         playing: true,
         looping: true,
         pairs_per_second: Some(4.0),
+        growth: Default::default(),
     };
     let job = JobView {
         id: JobId(7),

@@ -101,14 +101,14 @@ fn each_entry_says_its_error_and_what_is_in_use_is_listed() {
 fn what_was_put_in_use_last_of_a_kind_is_taken_back_and_an_earlier_one_is_used_again() {
     let (fake, mut window) = window_of(results());
     // From the newest down: the check changes nothing; model (it went with no other), screen, mount, eyes.
-    let buttons = window.get_all_by_label("Take back").count();
+    let buttons = window.get_all_by_label_contains("Undo: ").count();
     assert_eq!(
         buttons, 3,
         "screen, mount and eyes; the order of models is its workflow's, which knows none here"
     );
     let mut sent = vec![];
     for button in 0..buttons {
-        let found = window.get_all_by_label("Take back").nth(button).expect("a button");
+        let found = window.get_all_by_label_contains("Undo: ").nth(button).expect("a button");
         found.click();
         window.run_steps(3);
         sent.extend(fake.take_sent());
@@ -121,7 +121,7 @@ fn what_was_put_in_use_last_of_a_kind_is_taken_back_and_an_earlier_one_is_used_a
             Command::from(EyesCommand::UseEarlier { id: Some("id-1".to_owned()) }),
         ]
     );
-    click(&mut window, "Use again");
+    click(&mut window, "Use again: calibration of 14 pairs");
     assert_eq!(fake.take_sent(), [Command::from(EyesCommand::UseEarlier { id: Some("id-1".to_owned()) })]);
 }
 
@@ -132,7 +132,9 @@ fn two_entries_are_compared() {
     for title in ["calibration of 14 pairs", "calibration of 31 pairs"] {
         let rows: Vec<_> = window.get_all_by_label_contains(title).collect();
         rows.iter()
-            .find(|row| row.accesskit_node().role() == egui::accesskit::Role::Button)
+            // Not the button in it, which says whose it is.
+            .filter(|row| row.accesskit_node().role() == egui::accesskit::Role::Button)
+            .find(|row| row.accesskit_node().label().is_some_and(|label| label.starts_with(title)))
             .expect("a row")
             .click();
         window.run_steps(3);

@@ -28,4 +28,4 @@ pub use find::find;
 pub use finding::{Finding, Verdict};
 pub use next::plan_for;
 pub use options::Options;
-pub use plumbline_model::parameter_words;
+pub use plumbline_model::{number, parameter_units, parameter_words};

@@ -2,7 +2,7 @@
 
 use crate::finding::{Finding, FloorSource, FoundParameter, NamedEffect, ShownUnit, Verdict};
 use crate::watched::WATCHED;
-use plumbline_model::parameter_words;
+use plumbline_model::{counted, number, parameter_units, parameter_words};
 
 /// What was found, in words.
 pub(crate) fn of(finding: &Finding) -> String {
@@ -33,8 +33,8 @@ const MOST_PARAMETERS: usize = 3;
 
 /// The effects that are not told one by one.
 fn more(effects: &[NamedEffect]) -> Option<String> {
-    let rest: Vec<&str> = effects.iter().skip(MOST_EFFECTS).map(|effect| effect.title.as_str()).collect();
-    (!rest.is_empty()).then(|| format!("And {} more: {}.", rest.len(), rest.join("; ")))
+    let rest = effects.len().saturating_sub(MOST_EFFECTS);
+    (rest > 0).then(|| format!("And {rest} more."))
 }
 
 fn no_gap(finding: &Finding) -> String {
@@ -100,9 +100,9 @@ fn not_in_library(finding: &Finding) -> String {
         format!(" What is left depends on {}.", depends.join(" and "))
     };
     if finding.partial {
-        let parts: Vec<String> =
-            finding.addable().into_iter().map(|i| &finding.effects[i]).map(self::effect).collect();
-        let told: Vec<String> = parts.iter().take(MOST_EFFECTS).cloned().collect();
+        let parts = finding.addable();
+        let told: Vec<String> =
+            parts.iter().take(MOST_EFFECTS).map(|i| effect(&finding.effects[*i])).collect();
         let more = parts.len().saturating_sub(MOST_EFFECTS);
         let more = if more > 0 { format!(" And {more} more.") } else { String::new() };
         return format!(
@@ -139,23 +139,30 @@ fn is_family(effect: &NamedEffect) -> bool {
     effect.title.starts_with("every ") && !of_kind
 }
 
+/// The values that are not told one by one: `more` that are told, and `zero` that are not told from zero.
+fn rest(any_told: bool, more: usize, zero: usize) -> Option<String> {
+    let verb = |count: usize| if count == 1 { "is" } else { "are" };
+    let values = |count: usize| counted(count, "more value");
+    match (any_told, more, zero) {
+        (_, 0, 0) => None,
+        (false, _, 1) => Some("its size is not told from zero".to_owned()),
+        (false, _, _) => Some(format!("none of its {zero} values is told from zero")),
+        (true, _, 0) => Some(values(more)),
+        (true, 0, _) => Some(format!("{} {} not told from zero", values(zero), verb(zero))),
+        (true, _, _) => {
+            let all = values(more + zero);
+            Some(format!("{all}, {zero} of which {} not told from zero", verb(zero)))
+        }
+    }
+}
+
 fn effect(effect: &NamedEffect) -> String {
     let (told, zero): (Vec<&FoundParameter>, Vec<&FoundParameter>) =
         effect.parameters.iter().partition(|one| one.is_told());
+    let any_told = !told.is_empty();
     let (told, more) = clearest(told);
     let mut parameters: Vec<String> = told.into_iter().filter_map(parameter).collect();
-    if more > 0 {
-        parameters.push(format!("{more} more"));
-    }
-    if !zero.is_empty() {
-        let rest = match (parameters.is_empty(), zero.len()) {
-            (true, 1) => "its size is not told from zero".to_owned(),
-            (true, count) => format!("none of its {count} values is told from zero"),
-            (false, 1) => "one more is not told from zero".to_owned(),
-            (false, count) => format!("{count} more are not told from zero"),
-        };
-        parameters.push(rest);
-    }
+    parameters.extend(rest(any_told, more, zero.len()));
     let sized = if parameters.is_empty() { String::new() } else { format!(": {}", parameters.join(", ")) };
     let others: Vec<&str> = effect.class.iter().skip(1).map(|member| member.title.as_str()).take(3).collect();
     let family = if is_family(effect) { " (no single one explains it)" } else { "" };
@@ -171,54 +178,19 @@ fn effect(effect: &NamedEffect) -> String {
     format!("{title}{sized}; the data cannot tell it from: {}.{split}", others.join("; "))
 }
 
-/// Ends of names with what is told of an SI unit, and its unit; the longest come first.
-const UNITS: [(&str, f64, &str); 10] = [
-    ("_rad_per_nm", DEGREES, "° per N m"),
-    ("_nm_per_rad", 1.0, " N m/rad"),
-    ("_rad", DEGREES, "°"),
-    // How far bowed glass is off at 100 mm from its middle.
-    ("_per_m", 10.0, " mm at 100 mm"),
-    ("_m_per_n", 1e3, " mm per N"),
-    ("_m", 1e3, " mm"),
-    ("_kg", 1e3, " g"),
-    ("_px", 1.0, " px"),
-    ("_secs", 1.0, " s"),
-    ("_s", 1.0, " s"),
-];
-const DEGREES: f64 = 180.0 / std::f64::consts::PI;
-
 /// A parameter in the units of the lab, as far as its name says its unit.
 fn parameter(parameter: &FoundParameter) -> Option<String> {
     let FoundParameter { name, value, low, high, .. } = parameter;
-    let is_share = name.starts_with("scale") || matches!(name.as_str(), "ratio" | "fraction" | "weight");
-    let of_end = UNITS.iter().find(|(end, ..)| name.ends_with(end)).map(|&(_, scale, unit)| (scale, unit));
-    let (scale, unit) = of_end.or(is_share.then_some((100.0, " %")))?;
-    let (low, high) = (low * scale, high * scale);
-    let digits = digits(high - low);
-    let number = |value: f64| {
-        let text = format!("{value:.digits$}");
-        // What rounds to zero has no sign.
-        if text.trim_matches(['-', '0', '.']).is_empty() {
-            text.trim_start_matches('-').to_owned()
-        } else {
-            text
-        }
-    };
-    Some(format!(
-        "{} {}{unit} ({} to {})",
-        parameter_words::said(name),
-        number(value * scale),
-        number(low),
-        number(high)
-    ))
+    let unit = parameter_units::of(name)?;
+    let [value, low, high] = [value, low, high].map(|si| si * unit.per_si);
+    let decimals = number::decimals(high - low);
+    let size = parameter_units::with_unit(&fixed(value, decimals), Some(unit));
+    let (low, high) = (fixed(low, decimals), fixed(high, decimals));
+    Some(format!("{} {size} ({low} to {high})", parameter_words::said(name)))
 }
 
-/// Decimals that show two digits of an interval.
-fn digits(width: f64) -> usize {
-    if !(width > 0.0) || !width.is_finite() {
-        return 2;
-    }
-    (1.0 - width.log10().floor()).clamp(0.0, 4.0) as usize
+fn fixed(value: f64, decimals: usize) -> String {
+    number::fixed(value, decimals).unwrap_or_else(|| "not known".to_owned())
 }
 
 fn shrink(finding: &Finding) -> String {
@@ -243,8 +215,8 @@ fn shrink(finding: &Finding) -> String {
 
 fn size(value: f64, unit: ShownUnit) -> String {
     match unit {
-        ShownUnit::Meter => format!("{:.1} mm", value * 1e3),
-        ShownUnit::Pixel => format!("{value:.2} px"),
+        ShownUnit::Meter => format!("{} mm", fixed(value * 1e3, 1)),
+        ShownUnit::Pixel => format!("{} px", fixed(value, 2)),
     }
 }
 
@@ -268,8 +240,8 @@ mod tests {
             (told("rot_x_rad", 0.02, 0.018, 0.022), "turned about its x axis by 1.15° (1.03 to 1.26)"),
             (told("amplitude_rad", 0.01, 0.008, 0.012), "moves by up to 0.57° (0.46 to 0.69)"),
             (told("width_rad", 0.01, 0.0, 0.02), "from side to side 0.6° (0.0 to 1.1)"),
-            (told("length_m", -4e-3, -5e-3, -3e-3), "longer by -4.0 mm (-5.0 to -3.0)"),
-            (told("r_elbow_y_offset_rad", 0.02, 0.018, 0.022), "r elbow y off by 1.15° (1.03 to 1.26)"),
+            (told("length_m", -4e-3, -5e-3, -3e-3), "longer by −4.0 mm (−5.0 to −3.0)"),
+            (told("r_elbow_y_offset_rad", 0.02, 0.018, 0.022), "right elbow y off by 1.15° (1.03 to 1.26)"),
             (told("scale_u", 0.02, 0.01, 0.03), "wider by 2.0 % (1.0 to 3.0)"),
         ];
         for (told, words) in said {
@@ -277,5 +249,22 @@ mod tests {
         }
         // A number without a unit of its own is on the page, not in the sentence.
         assert_eq!(told("order", 2.0, 2.0, 2.0), None);
+    }
+
+    #[test]
+    fn values_that_are_not_told_one_by_one_are_one_phrase() {
+        let said = [
+            ((true, 0, 0), None),
+            ((false, 0, 1), Some("its size is not told from zero")),
+            ((false, 0, 3), Some("none of its 3 values is told from zero")),
+            ((true, 1, 0), Some("1 more value")),
+            ((true, 0, 1), Some("1 more value is not told from zero")),
+            ((true, 0, 2), Some("2 more values are not told from zero")),
+            ((true, 1, 1), Some("2 more values, 1 of which is not told from zero")),
+            ((true, 2, 3), Some("5 more values, 3 of which are not told from zero")),
+        ];
+        for ((any_told, more, zero), words) in said {
+            assert_eq!(rest(any_told, more, zero).as_deref(), words, "{any_told} {more} {zero}");
+        }
     }
 }

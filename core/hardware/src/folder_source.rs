@@ -61,6 +61,7 @@ impl FolderSource {
             right: Arc::new(pair.right),
             time_difference_s: None,
             name: Some(name),
+            beside: Default::default(),
         }
     }
 }

@@ -42,6 +42,6 @@ pub use natural_order::natural_order;
 pub use recording_source::RecordingSource;
 pub use replay::{Replay, ReplayRate};
 pub use retrying::{Lost, RetryPolicy, Retrying, SourceStatus};
-pub use source::{Counters, FiniteSource, Next, Report, SourceDescription, SourceKind, StereoSource};
+pub use source::{Counters, FiniteSource, Growth, Next, Report, SourceDescription, SourceKind, StereoSource};
 pub use spec::{Opener, SourceOptions, SourceSpec, open, open_retrying};
 pub use video::VideoSource;

@@ -104,6 +104,11 @@ impl Playback {
         Ok(())
     }
 
+    /// There are so many pairs now.
+    pub fn grow(&mut self, pairs: usize) {
+        self.pairs = self.pairs.max(pairs);
+    }
+
     /// Goes on in another way, at once.
     pub fn set_replay(&mut self, replay: Replay) -> Result<(), SourceError> {
         self.replay = replay.check()?;

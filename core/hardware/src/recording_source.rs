@@ -3,10 +3,10 @@
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use image::{ImageFormat, ImageReader, RgbImage};
-use plumbline_model::{Eye, StereoFrame};
+use plumbline_model::{Beside, Eye, StereoFrame};
 use plumbline_recording::{Jpeg, RecordedPair, Recording};
 
 use crate::error::{PairProblem, SourceError};
@@ -14,7 +14,9 @@ use crate::image_file::{ImageProblem, file_name};
 use crate::jpeg;
 use crate::playback::{Playback, Turn};
 use crate::replay::Replay;
-use crate::source::{Counters, FiniteSource, Next, Report, SourceDescription, SourceKind, StereoSource};
+use crate::source::{
+    Counters, FiniteSource, Growth, Next, Report, SourceDescription, SourceKind, StereoSource,
+};
 
 /// Delivers the pairs of a recording one after the other.
 pub struct RecordingSource {
@@ -23,7 +25,23 @@ pub struct RecordingSource {
     playback: Playback,
     recorded_hz: f64,
     image_size: Option<(u32, u32)>,
+    /// What is written at its end is shown as it comes.
+    followed: Option<Following>,
 }
+
+/// When its end was looked at.
+#[derive(Clone, Copy, Debug)]
+struct Following {
+    looked: Instant,
+    grew: Instant,
+}
+
+/// Whoever writes a recording closes a part of it once a second.
+const LOOKS_EVERY: Duration = Duration::from_millis(300);
+/// One that has not grown for so long is not written any more.
+const SILENT: Duration = Duration::from_secs(10);
+/// Who shows it does not stay farther behind its end than this, s.
+const BEHIND_S: f64 = 3.0;
 
 impl RecordingSource {
     /// Replays a recording from its first pair on.
@@ -44,7 +62,14 @@ impl RecordingSource {
             reports.push(Report::Cut { file: file_name(path) });
         }
         let playback = Playback::new(pairs, replay, reports)?;
-        Ok(Self { path: path.to_owned(), recorded_hz: rate(&recording), recording, playback, image_size })
+        Ok(Self {
+            path: path.to_owned(),
+            recorded_hz: rate(&recording),
+            recording,
+            playback,
+            image_size,
+            followed: None,
+        })
     }
 
     /// How soon the next pair followed this one, Hz.
@@ -53,6 +78,42 @@ impl RecordingSource {
         let apart_s = captured(index).zip(captured(index + 1));
         let apart_s = apart_s.map_or(0.0, |(this, next)| next.duration_since(this).as_secs_f64());
         if apart_s > 0.0 { 1.0 / apart_s } else { self.recorded_hz }
+    }
+
+    /// All that there is was shown: looks whether more has come.
+    fn wait_for_more(&mut self, following: Following) -> Result<Next, SourceError> {
+        let now = Instant::now();
+        if now.saturating_duration_since(following.looked) < LOOKS_EVERY {
+            return Ok(Next::NotYet);
+        }
+        let came = self.take_up()?;
+        let grew = if came > 0 { now } else { following.grew };
+        self.followed = Some(Following { looked: now, grew });
+        let behind = (BEHIND_S * self.recorded_hz) as usize;
+        if came > behind {
+            self.playback.seek(self.playback.pairs() - 1)?;
+        }
+        let is_silent = now.saturating_duration_since(grew) > SILENT;
+        if came == 0 && (self.recording.is_whole() || is_silent) {
+            self.followed = None;
+            let why = if is_silent { "has not grown for ten seconds" } else { "was finished" };
+            let said = format!("{} {why}: this is its end", file_name(&self.path));
+            self.playback.tell(Report::Unlike(said));
+            return Ok(Next::End);
+        }
+        Ok(Next::NotYet)
+    }
+
+    /// How many pairs have come.
+    fn take_up(&mut self) -> Result<usize, SourceError> {
+        let came = self.recording.go_on();
+        let came = came.map_err(|error| SourceError::Recording { problem: error.to_string() })?;
+        self.playback.grow(self.recording.pair_count());
+        Ok(came)
+    }
+
+    fn is_at_end(&self) -> bool {
+        self.playback.position() >= self.playback.pairs()
     }
 
     fn load(&mut self, index: usize) -> Result<(RecordedPair, [RgbImage; 2]), PairProblem> {
@@ -99,6 +160,9 @@ fn decode(image: &Jpeg, eye: Eye, name: &str) -> Result<RgbImage, PairProblem> {
 
 impl StereoSource for RecordingSource {
     fn next_pair(&mut self) -> Result<Next, SourceError> {
+        if let Some(following) = self.followed.filter(|_| self.is_at_end()) {
+            return self.wait_for_more(following);
+        }
         let index = match self.playback.turn() {
             Turn::NotYet => return Ok(Next::NotYet),
             Turn::End => return Ok(Next::End),
@@ -113,6 +177,7 @@ impl StereoSource for RecordingSource {
                     right: Arc::new(right),
                     time_difference_s: Some(pair.right_later_s),
                     name: Some(pair_name(index)),
+                    beside: Beside { jpegs: None, then: Some(pair.eyes) },
                 }))
             }
             Err(problem) => self.playback.skip(index, pair_name(index), problem),
@@ -138,7 +203,7 @@ impl StereoSource for RecordingSource {
     }
 
     fn wait_hint(&self) -> Duration {
-        self.playback.wait()
+        if self.followed.is_some() && self.is_at_end() { LOOKS_EVERY } else { self.playback.wait() }
     }
 
     fn as_finite(&mut self) -> Option<&mut dyn FiniteSource> {
@@ -165,5 +230,24 @@ impl FiniteSource for RecordingSource {
 
     fn set_replay(&mut self, replay: Replay) -> Result<(), SourceError> {
         self.playback.set_replay(replay)
+    }
+
+    fn growth(&self) -> Growth {
+        match self.followed {
+            Some(_) => Growth::Followed,
+            None if self.recording.is_whole() => Growth::Ended,
+            None => Growth::Open,
+        }
+    }
+
+    fn follow(&mut self, on: bool) -> Result<(), SourceError> {
+        if !on || self.recording.is_whole() {
+            self.followed = None;
+            return Ok(());
+        }
+        self.take_up()?;
+        let now = Instant::now();
+        self.followed = Some(Following { looked: now, grew: now });
+        self.playback.seek(self.playback.pairs() - 1)
     }
 }

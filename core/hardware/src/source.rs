@@ -57,6 +57,31 @@ pub trait FiniteSource {
 
     /// Changes rate and looping from the next pair on; refuses a rate that is no rate.
     fn set_replay(&mut self, replay: Replay) -> Result<(), SourceError>;
+
+    /// Whether more pairs may come at its end.
+    fn growth(&self) -> Growth {
+        Growth::Ended
+    }
+
+    /// Goes to its end, and on with what comes there; or does so no more. What has ended stays as it is.
+    ///
+    /// # Errors
+    /// When it cannot be read any more.
+    fn follow(&mut self, _on: bool) -> Result<(), SourceError> {
+        Ok(())
+    }
+}
+
+/// Whether more pairs may come at the end of a source that has one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Growth {
+    /// No.
+    #[default]
+    Ended,
+    /// It was not finished: it may be written still.
+    Open,
+    /// Yes, and they are shown as they come.
+    Followed,
 }
 
 /// Answer of a source that is asked for a pair.

@@ -138,6 +138,7 @@ impl StereoSource for VideoSource {
             left: Arc::new(left.frame),
             right: Arc::new(right.frame),
             name: Some(format!("{:.3} s", left.time_s)),
+            beside: Default::default(),
         }))
     }
 

@@ -37,6 +37,8 @@ pub struct Exported {
     pub rate_hz: f64,
     /// Joints whose angles are in it.
     pub joints: Vec<String>,
+    /// Whether it says for each pair where the left eye was in the robot.
+    pub has_places: bool,
 }
 
 /// Writes a data set with one episode into an empty or a new folder.
@@ -54,8 +56,9 @@ pub fn export(
     }
     let mut opened = Recording::open(recording)?;
     let readings = opened.joints()?;
+    let places = opened.robot_from_left()?;
     let names = joint_names(&readings);
-    let frames = frames(&opened, &readings);
+    let frames = frames(&opened, &readings, &places);
     if frames.is_empty() || names.is_empty() {
         return Err(ExportError::NoFrames(recording.to_owned()));
     }
@@ -63,11 +66,12 @@ pub fn export(
     let rate_hz = rate_hz(&captured);
     let image = dimensions(recording, &opened.pair(frames[0].pair)?, frames[0].pair)?;
     let robot = opened.whose().rig.clone().unwrap_or_else(|| "unknown".to_owned());
-    let about = About { robot: &robot, joints: &names, image, frames: frames.len(), rate_hz };
+    let has_places = frames.iter().all(|frame| frame.robot_from_left.is_some());
+    let about = About { robot: &robot, joints: &names, image, frames: frames.len(), rate_hz, has_places };
     let mut rows = Rows::new(recording, &about);
     let features = json!({ "info": { "features": hugging_face(&about) } }).to_string();
     let told = vec![("huggingface".to_owned(), features)];
-    write_table(&folder.join(FIRST_DATA), &ORDER, told, |table| {
+    write_table(&folder.join(FIRST_DATA), order(has_places), told, |table| {
         for group in frames.chunks(GROUP) {
             context.checkpoint()?;
             context.report(rows.written as f64 / frames.len() as f64, "writing rows");
@@ -91,7 +95,7 @@ pub fn export(
             files::write(&file, &attached.bytes)?;
         }
     }
-    Ok(Exported { frames: frames.len(), left_out, rate_hz, joints: names })
+    Ok(Exported { frames: frames.len(), left_out, rate_hz, joints: names, has_places })
 }
 
 /// A pair that is in the data set, and the reading before it.
@@ -99,13 +103,22 @@ struct Frame {
     pair: usize,
     reading: usize,
     at: Timestamp,
+    /// Where the left eye was in the robot: rows of a matrix 4 by 4.
+    robot_from_left: Option<[[f64; 4]; 4]>,
 }
 
-fn frames(recording: &Recording, readings: &[Told<Vec<JointReading>>]) -> Vec<Frame> {
+fn frames(
+    recording: &Recording,
+    readings: &[Told<Vec<JointReading>>],
+    places: &[Told<[[f64; 4]; 4]>],
+) -> Vec<Frame> {
     let frame = |pair: usize| {
         let at = recording.captured_at(pair)?;
         let reading = readings.partition_point(|reading| reading.at <= at).checked_sub(1)?;
-        Some(Frame { pair, reading, at })
+        // It is written with each pair; what is older was of another posture of the head.
+        let place = places.partition_point(|place| place.at <= at).checked_sub(1).map(|k| &places[k]);
+        let robot_from_left = place.filter(|place| place.at == at).map(|place| place.what);
+        Some(Frame { pair, reading, at, robot_from_left })
     };
     (0..recording.pair_count()).filter_map(frame).collect()
 }
@@ -146,9 +159,11 @@ struct Rows<'a> {
     recording: &'a Path,
     rate_hz: f64,
     every: usize,
+    has_places: bool,
     first: Option<Timestamp>,
     written: usize,
     of_state: Statistics,
+    of_places: Statistics,
     of_time: Statistics,
     of_captured: Statistics,
     of_number: Statistics,
@@ -162,9 +177,11 @@ impl<'a> Rows<'a> {
             recording,
             rate_hz: about.rate_hz.round().max(1.0),
             every: about.frames.div_ceil(LOOKED_AT).max(1),
+            has_places: about.has_places,
             first: None,
             written: 0,
             of_state: Statistics::default(),
+            of_places: Statistics::default(),
             of_time: Statistics::default(),
             of_captured: Statistics::default(),
             of_number: Statistics::default(),
@@ -183,6 +200,7 @@ impl<'a> Rows<'a> {
     ) -> Result<(), ExportError> {
         let mut images: [Vec<(Vec<u8>, String)>; 2] = Default::default();
         let (mut state, mut captured, mut times, mut numbers) = (vec![], vec![], vec![], vec![]);
+        let mut places: Vec<f32> = vec![];
         for frame in group {
             let number = self.written;
             let first = *self.first.get_or_insert(frame.at);
@@ -196,6 +214,10 @@ impl<'a> Rows<'a> {
             let angles = angles(&readings[..=frame.reading], names);
             self.of_state.add(angles.iter().map(|angle| f64::from(*angle)));
             state.extend(angles);
+            if let Some(rows) = frame.robot_from_left.filter(|_| self.has_places) {
+                self.of_places.add(rows.iter().flatten().copied());
+                places.extend(rows.iter().flatten().map(|value| *value as f32));
+            }
             let time = number as f64 / self.rate_hz;
             let at_s = seconds(first, frame.at);
             self.of_time.add([time]);
@@ -209,7 +231,7 @@ impl<'a> Rows<'a> {
         }
         let zeros = vec![0; group.len()];
         let [left, right] = images;
-        table.rows(&[
+        let mut columns = vec![
             Column::Images(left),
             Column::Images(right),
             Column::FloatLists(names.len(), state),
@@ -219,7 +241,11 @@ impl<'a> Rows<'a> {
             Column::Integers(zeros.clone()),
             Column::Integers(numbers),
             Column::Integers(zeros),
-        ])
+        ];
+        if self.has_places {
+            columns.push(Column::FloatLists(16, places));
+        }
+        table.rows(&columns)
     }
 
     /// Colors of an image, 0 to 1.
@@ -233,7 +259,7 @@ impl<'a> Rows<'a> {
     fn statistics(&self) -> serde_json::Value {
         let number = |value: f64| json!(value);
         let image = |eye: usize| self.of_images[eye].json(|value| json!([[value]]));
-        json!({
+        let mut all = json!({
             meta::image_key(Eye::Left): image(0),
             meta::image_key(Eye::Right): image(1),
             "observation.state": self.of_state.json(number),
@@ -243,12 +269,16 @@ impl<'a> Rows<'a> {
             "index": self.of_number.json(number),
             "episode_index": self.of_zero.json(number),
             "task_index": self.of_zero.json(number),
-        })
+        });
+        if self.has_places {
+            all[meta::PLACES] = self.of_places.json(number);
+        }
+        all
     }
 }
 
 /// The order of the columns, whatever that of the keys of JSON is.
-const ORDER: [&str; 9] = [
+const ORDER: [&str; 10] = [
     "observation.images.left_eye",
     "observation.images.right_eye",
     "observation.state",
@@ -258,7 +288,13 @@ const ORDER: [&str; 9] = [
     "episode_index",
     "index",
     "task_index",
+    meta::PLACES,
 ];
+
+/// The columns that there are.
+fn order(has_places: bool) -> &'static [&'static str] {
+    if has_places { &ORDER } else { &ORDER[..ORDER.len() - 1] }
+}
 
 /// Angles of joints as each was read last, rad.
 fn angles(readings: &[Told<Vec<JointReading>>], names: &[String]) -> Vec<f32> {
@@ -272,7 +308,7 @@ fn angles(readings: &[Told<Vec<JointReading>>], names: &[String]) -> Vec<f32> {
 /// The kinds of the columns as readers of Hugging Face know them.
 fn hugging_face(about: &About<'_>) -> serde_json::Value {
     let one = |dtype: &str| json!({ "dtype": dtype, "_type": "Value" });
-    json!({
+    let mut all = json!({
         ORDER[0]: { "_type": "Image" },
         ORDER[1]: { "_type": "Image" },
         ORDER[2]: { "feature": one("float32"), "length": about.joints.len(), "_type": "Sequence" },
@@ -282,7 +318,11 @@ fn hugging_face(about: &About<'_>) -> serde_json::Value {
         ORDER[6]: one("int64"),
         ORDER[7]: one("int64"),
         ORDER[8]: one("int64"),
-    })
+    });
+    if about.has_places {
+        all[meta::PLACES] = json!({ "feature": one("float32"), "length": 16, "_type": "Sequence" });
+    }
+    all
 }
 
 /// The one task, and the one episode.

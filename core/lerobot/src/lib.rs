@@ -14,7 +14,8 @@
 //! Images are kept inside the rows as they were recorded (JPEG), so that nothing is encoded twice. As the layout wants
 //! it, `timestamp` is the number of the frame over the rate; when a pair truly was captured stands beside it in
 //! `observation.captured_s`. Angles are those read last before a pair; pairs before the first reading are left out and
-//! counted. There is no `action`: a recording holds no goals of joints for each pair.
+//! counted. Where the recording says how the head stood, `observation.robot_from_left_eye` says for each frame where the
+//! left eye was in the robot (a matrix 4 by 4, row by row, m). There is no `action`: a recording holds no goals of joints for each pair.
 
 mod data;
 mod error;

@@ -21,6 +21,9 @@ pub(crate) fn image_key(eye: Eye) -> &'static str {
     }
 }
 
+/// Where the left eye was in the robot: 16 numbers, row by row, of the matrix that takes points (m) of that eye there.
+pub(crate) const PLACES: &str = "observation.robot_from_left_eye";
+
 /// What the data set is about.
 pub(crate) struct About<'a> {
     pub robot: &'a str,
@@ -29,6 +32,8 @@ pub(crate) struct About<'a> {
     pub image: [u32; 2],
     pub frames: usize,
     pub rate_hz: f64,
+    /// Whether each pair says where the left eye was.
+    pub has_places: bool,
 }
 
 /// Features and their kinds.
@@ -48,6 +53,11 @@ pub(crate) fn features(about: &About<'_>) -> Map<String, Value> {
     features.insert("timestamp".to_owned(), one("float32"));
     for name in ["frame_index", "episode_index", "index", "task_index"] {
         features.insert(name.to_owned(), one("int64"));
+    }
+    if about.has_places {
+        let names: Vec<String> = (0..16).map(|k| format!("row_{}_column_{}", k / 4, k % 4)).collect();
+        let places = json!({ "dtype": "float32", "shape": [16], "names": names });
+        features.insert(PLACES.to_owned(), places);
     }
     features
 }
@@ -92,7 +102,9 @@ pub(crate) fn cameras(cameras: &StereoCameras) -> Value {
     let rows: Vec<Vec<f64>> = right_from_left.row_iter().map(|row| row.iter().copied().collect()).collect();
     json!({
         "about": "pixel (0, 0) is the middle of the top left one; axes of a camera: x right, y down, z along the line \
-            of sight; right_from_left takes points (m) of the left camera to the right one",
+            of sight; right_from_left takes points (m) of the left camera to the right one; where the left camera was \
+            in the robot (torso: x forward, y left, z up) is observation.robot_from_left_eye of each frame, where the \
+            recording says it",
         image_key(Eye::Left): eye(&cameras.left),
         image_key(Eye::Right): eye(&cameras.right),
         "right_from_left": rows,

@@ -18,6 +18,8 @@ pub mod frame;
 pub mod image_pair;
 pub mod job;
 pub mod measured_data;
+pub mod number;
+pub mod parameter_units;
 pub mod parameter_words;
 pub mod pixel;
 pub mod plausible;
@@ -44,7 +46,7 @@ pub use formats::FormatError;
 pub use frame::{
     Board, Direction, Frame, LeftCamera, LeftRectified, Point, Pose, RightCamera, RightRectified, Robot,
 };
-pub use image_pair::{Stamp, StereoFrame};
+pub use image_pair::{Beside, EyesThen, Stamp, StereoFrame};
 pub use job::{Cancelled, JobContext, Unattended};
 pub use pixel::{Eye, Pixel, PixelSpace, Raw, Rectified};
 pub use session::{Session, SessionError};

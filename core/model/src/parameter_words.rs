@@ -66,7 +66,7 @@ const UNITS: [&str; 11] =
     ["_rad_per_nm", "_nm_per_rad", "_m_per_n", "_per_m", "_rad", "_kg", "_px", "_secs", "_nm", "_m", "_s"];
 
 /// What is said before a value: "off by", "turned about its x axis by". A site before the name, where one
-/// effect stands for every joint, is kept: "r elbow y off by".
+/// effect stands for every joint, is kept: "right elbow y off by".
 pub fn said(name: &str) -> String {
     with_site(name, |(_, said, _)| (*said).to_owned(), |along| format!("shifted {along} by"))
 }
@@ -74,6 +74,18 @@ pub fn said(name: &str) -> String {
 /// What a parameter is called inside of a sentence: "zero", "turn about its x axis".
 pub fn called(name: &str) -> String {
     with_site(name, |(_, _, called)| (*called).to_owned(), |along| format!("shift {along}"))
+}
+
+/// A joint or link that nobody gave a title: "right elbow y" of `r_elbow_y`, "right forearm" of `forearm_r`.
+pub fn place(site: &str) -> String {
+    let side = |part: &str| match part {
+        "r" => Some("right"),
+        "l" => Some("left"),
+        _ => None,
+    };
+    let (sides, rest): (Vec<&str>, Vec<&str>) = site.split('_').partition(|part| side(part).is_some());
+    let sides = sides.into_iter().filter_map(side);
+    sides.chain(rest).collect::<Vec<_>>().join(" ")
 }
 
 type Known = (&'static str, &'static str, &'static str);
@@ -87,7 +99,7 @@ fn with_site(name: &str, known: impl Fn(&Known) -> String, shift: impl Fn(&str) 
     let cuts = std::iter::once(0).chain(name.match_indices('_').map(|(at, _)| at + 1));
     for at in cuts {
         if let Some(words) = of_name(&name[at..]) {
-            let site = name[..at].trim_end_matches('_').replace('_', " ");
+            let site = place(name[..at].trim_end_matches('_'));
             return if site.is_empty() { words } else { format!("{site} {words}") };
         }
     }
@@ -110,9 +122,18 @@ mod tests {
 
     #[test]
     fn a_site_stays_before_the_words() {
-        assert_eq!(said("r_elbow_y_offset_rad"), "r elbow y off by");
-        assert_eq!(called("r_wrist_x_rot_z_rad"), "r wrist x turn about its z axis");
+        assert_eq!(said("r_elbow_y_offset_rad"), "right elbow y off by");
+        assert_eq!(called("r_wrist_x_rot_z_rad"), "right wrist x turn about its z axis");
         assert_eq!(said("right_forearm_length_m"), "right forearm longer by");
+    }
+
+    #[test]
+    fn a_place_without_a_title_is_read() {
+        let places =
+            [("r_elbow_y", "right elbow y"), ("forearm_r", "right forearm"), ("tip", "tip"), ("", "")];
+        for (site, words) in places {
+            assert_eq!(place(site), words);
+        }
     }
 
     #[test]

@@ -481,6 +481,20 @@ fn tables_need_what_explains_them() {
 }
 
 #[test]
+fn a_session_begins_with_nothing_measured_and_is_none_before_something_is() {
+    let folder = folder();
+    let started = "2026-11-21T10:04:00Z".parse().expect("a time");
+    let begun = Session::new(Manifest::of_rig("nico", started));
+    begun.write(folder.path()).expect("written");
+    let error = Session::read(folder.path()).expect_err("nothing was measured");
+    assert!(matches!(error, SessionError::NothingMeasured { .. }), "{error}");
+    put(folder.path(), "log.mcap", "x");
+    let read = Session::read(folder.path()).expect("a session");
+    assert_eq!((&read.manifest, &read.touches, &read.stereo), (&begun.manifest, &None, &begun.stereo));
+    assert_eq!(read.manifest.rig, RigReference::Named("nico".to_owned()));
+}
+
+#[test]
 fn a_log_alone_is_a_session() {
     let session = session_of(&[("session.toml", MANIFEST), ("log.mcap", "x")]).expect("read");
     assert!(session.log.is_some_and(|file| file.ends_with("log.mcap")));

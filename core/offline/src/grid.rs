@@ -2,8 +2,12 @@
 //! correction makes of them.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
-use plumbline_drift::{GridErrors, GridPlace, PivotCorrection, grid_places};
+use plumbline_drift::{
+    GridCorrection as Correction, GridErrors, GridPlace, PivotCorrection, grid_places, judge,
+};
+use plumbline_effects::{RigModel, RobotModel};
 use plumbline_model::JobContext;
 use serde::Serialize;
 
@@ -15,6 +19,8 @@ use super::session;
 pub struct GridArgs {
     /// Session with `localizations.csv`: true places and estimates.
     pub session: PathBuf,
+    /// Effects of the eyes that are undone, as they are kept by the window or written by `gap`.
+    pub rig_model: Option<PathBuf>,
 }
 
 /// How far off places came out.
@@ -31,8 +37,8 @@ pub struct GridReport {
 /// Places with one correction.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GridCorrection {
-    /// `none`, `pivot-published`, `pivot-fitted` (on the same places) or `pivot-held-out` (each place by a fit
-    /// to the others).
+    /// `none`, `pivot-published`, `pivot-fitted` (on the same places), `pivot-held-out` (each place by a fit
+    /// to the others) or `rig-model` (with the effects of that model, at the time and with the head of each row).
     pub correction: &'static str,
     /// Mean error in the plane of the table.
     pub mean_mm: f64,
@@ -73,6 +79,12 @@ pub fn grid(args: &GridArgs, _: &dyn JobContext) -> Result<GridReport, OfflineEr
     if let Some(held_out) = PivotCorrection::leave_one_out(&places) {
         corrections.push(corrected("pivot-held-out", &held_out));
     }
+    if let (Some(file), Some(table)) = (&args.rig_model, &session.localizations) {
+        let added = RigModel::read(file, &rig)?;
+        let model = RobotModel::new(Arc::new(rig), Arc::new(added))?;
+        let judged = judge(table, &model, Correction::Model);
+        corrections.push(judged.ok().and_then(|judged| corrected("rig-model", &judged.places)));
+    }
     let numbers = |pivot: &PivotCorrection| {
         let [a, b, c] = pivot.shift;
         [a, b, c, pivot.far_factor]
@@ -98,4 +110,71 @@ fn corrected(correction: &'static str, places: &[GridPlace]) -> Option<GridCorre
         worst_mm: 1e3 * errors.worst_m,
         places: places.iter().map(row).collect(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use plumbline_effects::rig_model::ModelEffect;
+    use plumbline_effects::{Effect, Kind};
+    use plumbline_model::robot::default_rig;
+    use plumbline_model::session::{LocalizationRow, LocalizationTable, Manifest, StereoImages};
+    use plumbline_model::{Point, Session, Unattended};
+
+    use super::*;
+
+    /// Places that come out where they are, twenty minutes after the cameras were switched on.
+    fn session(folder: &std::path::Path) {
+        let place = |k: usize| Point::new(0.2 + 0.1 * (k / 3) as f64, 0.1 * (k % 3) as f64 - 0.1, 0.05);
+        let row = |k: usize| LocalizationRow {
+            truth: Some(place(k)),
+            estimate: Some(place(k)),
+            t_secs: Some(1200.0),
+            valid: true,
+            ..LocalizationRow::default()
+        };
+        let rows: Vec<LocalizationRow> = (0..9).map(row).collect();
+        let session = Session {
+            manifest: Manifest::of_rig("nico", jiff::Timestamp::UNIX_EPOCH),
+            touches: None,
+            localizations: Some(LocalizationTable::from_rows(vec![], &rows)),
+            poses: None,
+            stereo: StereoImages::default(),
+            log: None,
+        };
+        session.write(folder).expect("written");
+    }
+
+    fn worst_mm(folder: &std::path::Path, model: &RigModel) -> f64 {
+        let file = folder.join("rig-model.toml");
+        model.write(&file, &default_rig()).expect("written");
+        let args = GridArgs { session: folder.to_owned(), rig_model: Some(file) };
+        let report = grid(&args, &Unattended).expect("judged");
+        report.corrections.iter().find(|one| one.correction == "rig-model").expect("made").worst_mm
+    }
+
+    #[test]
+    fn places_are_judged_with_the_effects_of_a_rig_model() {
+        let folder = tempfile::tempdir().expect("a folder");
+        session(folder.path());
+        let mut model = RigModel::nominal(&default_rig());
+        assert!(worst_mm(folder.path(), &model) < 1e-6, "without effects nothing is changed");
+        model.contents.effects.push(ModelEffect {
+            id: Kind::EyeYaw.id().to_owned(),
+            site: "right".to_owned(),
+            title: String::new(),
+            tip: None,
+            shape: Some(Effect::yaw_growth(240.0, 0.0)),
+            reference_s: 0.0,
+            values: vec![0.01],
+            covariance: vec![],
+            probability: None,
+            parameters: vec![],
+        });
+        assert!(
+            worst_mm(folder.path(), &model) > 10.0,
+            "an eye that turned is undone at the time of each row"
+        );
+        let args = GridArgs { session: folder.path().to_owned(), rig_model: Some("none.toml".into()) };
+        assert!(matches!(grid(&args, &Unattended), Err(OfflineError::Effects(_))));
+    }
 }

@@ -36,6 +36,8 @@ pub struct LerobotReport {
     pub joints: Vec<String>,
     /// Whether lenses and how the eyes sit to each other are in it: the recording has a calibration.
     pub has_cameras: bool,
+    /// Whether it says for each pair where the left eye was in the robot: the recording says how the head stood.
+    pub has_places: bool,
 }
 
 /// Writes the data set.
@@ -52,5 +54,6 @@ pub fn lerobot(args: &LerobotArgs, context: &dyn JobContext) -> Result<LerobotRe
         rate_hz: exported.rate_hz,
         joints: exported.joints,
         has_cameras: cameras.is_some(),
+        has_places: exported.has_places,
     })
 }

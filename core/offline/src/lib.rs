@@ -18,6 +18,8 @@ pub mod doctor;
 mod error;
 mod gap;
 mod gap_calibrations;
+#[cfg(test)]
+mod gap_tests;
 mod grasp;
 mod grid;
 mod health;

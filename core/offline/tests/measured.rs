@@ -138,7 +138,7 @@ fn a_grid_of_the_real_robot_is_judged_with_the_published_correction() {
     else {
         return;
     };
-    let report = grid(&GridArgs { session: folder }, &Unattended).expect("judged");
+    let report = grid(&GridArgs { session: folder, rig_model: None }, &Unattended).expect("judged");
     let of = |name: &str| report.corrections.iter().find(|one| one.correction == name).expect("made");
     assert_eq!(of("none").places.len(), 36);
     assert!((of("none").mean_mm - 36.8).abs() < 0.1, "{}", of("none").mean_mm);
@@ -147,5 +147,6 @@ fn a_grid_of_the_real_robot_is_judged_with_the_published_correction() {
     let empty = tempfile::tempdir().expect("temporary folder");
     let manifest = "format = 1\nrig = \"nico\"\nstarted = 2026-01-01T00:00:00Z\n";
     std::fs::write(empty.path().join("session.toml"), manifest).expect("written");
-    assert!(grid(&GridArgs { session: empty.path().to_owned() }, &Unattended).is_err());
+    let args = GridArgs { session: empty.path().to_owned(), rig_model: None };
+    assert!(grid(&args, &Unattended).is_err());
 }

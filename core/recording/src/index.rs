@@ -57,17 +57,29 @@ pub(crate) struct Index {
     pub is_whole: bool,
     /// Pairs and messages that are not in it.
     pub dropped: Option<u64>,
+    /// Where the record behind the last whole one begins.
+    offset: u64,
+    topics: BTreeMap<u16, Topic>,
 }
 
 impl Index {
     /// Reads the whole file once.
     pub fn of(file: &Path) -> Result<Self, RecordingError> {
-        let mut scan = Scan { index: Self::default(), offset: MAGIC, topics: BTreeMap::new() };
-        each_record(file, LONGEST, |opcode, body| match scan.take(opcode, body) {
+        let mut index = Self { offset: MAGIC, ..Self::default() };
+        index.read(file, 0)?;
+        Ok(index)
+    }
+
+    /// Reads what was written since.
+    pub fn go_on(&mut self, file: &Path) -> Result<(), RecordingError> {
+        if self.is_whole { Ok(()) } else { self.read(file, self.offset) }
+    }
+
+    fn read(&mut self, file: &Path, from: u64) -> Result<(), RecordingError> {
+        each_record(file, LONGEST, from, |opcode, body| match self.take(opcode, body) {
             Ok(()) => ControlFlow::Continue(()),
             Err(_) => ControlFlow::Break(()),
-        })?;
-        Ok(scan.index)
+        })
     }
 
     pub fn of_topic(&self, topic: Topic) -> &[Place] {
@@ -75,33 +87,26 @@ impl Index {
     }
 }
 
-struct Scan {
-    index: Index,
-    offset: u64,
-    topics: BTreeMap<u16, Topic>,
-}
-
-impl Scan {
+impl Index {
     fn take(&mut self, opcode: u8, body: &[u8]) -> mcap::McapResult<()> {
         let offset = self.offset + HEAD;
         self.offset = offset + body.len() as u64;
         match mcap::parse_record(opcode, body)? {
-            Record::Header(header) => self.index.software = header.library,
+            Record::Header(header) => self.software = header.library,
             Record::Channel(channel) => self.channel(&channel),
             Record::Metadata(metadata) if metadata.name == "plumbline" => {
-                (self.index.whose, self.index.is_ours) = (Whose::of(&metadata), true);
+                (self.whose, self.is_ours) = (Whose::of(&metadata), true);
             }
             Record::Metadata(metadata) if metadata.name == END => {
-                self.index.dropped =
-                    metadata.metadata.get("dropped").and_then(|dropped| dropped.parse().ok());
+                self.dropped = metadata.metadata.get("dropped").and_then(|dropped| dropped.parse().ok());
             }
-            Record::Attachment { header, data, .. } => self.index.attached.push(Attached {
+            Record::Attachment { header, data, .. } => self.attached.push(Attached {
                 name: header.name,
                 media_type: header.media_type,
                 bytes: data.into_owned(),
             }),
             Record::Chunk { header, data } => self.chunk(offset, body.len(), header, &data)?,
-            Record::DataEnd(_) => self.index.is_whole = true,
+            Record::DataEnd(_) => self.is_whole = true,
             _ => {}
         }
         Ok(())
@@ -120,7 +125,7 @@ impl Scan {
         header: mcap::records::ChunkHeader,
         data: &[u8],
     ) -> mcap::McapResult<()> {
-        let chunk = self.index.chunks.len();
+        let chunk = self.chunks.len();
         let mut found = Vec::new();
         let mut nth = 0;
         for record in ChunkReader::new(header, data)? {
@@ -134,9 +139,9 @@ impl Scan {
                 _ => {}
             }
         }
-        self.index.chunks.push(ChunkPlace { offset, length });
+        self.chunks.push(ChunkPlace { offset, length });
         for (topic, place) in found {
-            self.index.messages.entry(topic).or_default().push(place);
+            self.messages.entry(topic).or_default().push(place);
         }
         Ok(())
     }

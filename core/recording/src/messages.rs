@@ -1,7 +1,8 @@
 //! Messages as they stand in the file.
 
 use foxglove::messages::{
-    CameraCalibration, CompressedImage, JointState, JointStates, Log, Timestamp as FoxgloveTime, log,
+    CameraCalibration, CompressedImage, FrameTransforms, ImageAnnotations, JointState, JointStates, Log,
+    Timestamp as FoxgloveTime, log,
 };
 use foxglove::{Encode, Schema};
 use jiff::Timestamp;
@@ -59,7 +60,7 @@ pub(crate) fn moment(nanoseconds: u64) -> Option<Timestamp> {
     Timestamp::from_nanosecond(i128::from(nanoseconds)).ok()
 }
 
-fn time(at: Timestamp) -> Option<FoxgloveTime> {
+pub(crate) fn time(at: Timestamp) -> Option<FoxgloveTime> {
     let nanoseconds = nanoseconds(at);
     let seconds = u32::try_from(nanoseconds / 1_000_000_000).ok()?;
     FoxgloveTime::new_checked(seconds, (nanoseconds % 1_000_000_000) as u32)
@@ -154,6 +155,9 @@ pub(crate) fn kind(topic: Topic) -> (Schema, String) {
         Topic::Notes => of::<Log>(),
         Topic::Commands => json("plumbline.Command"),
         Topic::Detections => json("plumbline.Detections"),
+        Topic::Eyes => json("plumbline.Eyes"),
+        Topic::Transforms => of::<FrameTransforms>(),
+        Topic::LeftAnnotations | Topic::RightAnnotations => of::<ImageAnnotations>(),
     }
 }
 

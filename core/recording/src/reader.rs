@@ -6,13 +6,15 @@ use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use foxglove::Decode;
-use foxglove::messages::{CompressedImage, JointStates, Log};
+use foxglove::messages::{CompressedImage, FrameTransforms, JointStates, Log};
 use jiff::Timestamp;
 use mcap::read::ChunkReader;
 use mcap::records::Record;
+use plumbline_model::EyesThen;
 use serde_json::Value;
 
 use crate::error::RecordingError;
+use crate::frames;
 use crate::index::{Index, Place};
 use crate::messages::{self, JointReading, Note};
 use crate::topic::Topic;
@@ -30,6 +32,8 @@ pub struct RecordedPair {
     pub images: [Jpeg; 2],
     /// The right image after the left one, s.
     pub right_later_s: f64,
+    /// How the eyes were then, as far as it says.
+    pub eyes: EyesThen,
 }
 
 /// Something that was told at a time.
@@ -48,6 +52,8 @@ pub struct Recording {
     index: Index,
     /// Left and right image of each pair.
     pairs: Vec<[Place; 2]>,
+    /// How the eyes were, by time and number of a pair.
+    eyes: BTreeMap<(u64, u32), Place>,
     /// Bodies of the messages of the chunk that was read last.
     chunk: Option<(usize, Vec<Vec<u8>>)>,
 }
@@ -66,7 +72,21 @@ impl Recording {
             return Err(RecordingError::NotARecording { file: path.to_owned(), what });
         }
         let pairs = pairs(index.of_topic(Topic::LeftEye), index.of_topic(Topic::RightEye));
-        Ok(Self { path: path.to_owned(), file, index, pairs, chunk: None })
+        let eyes = by_pair(index.of_topic(Topic::Eyes));
+        Ok(Self { path: path.to_owned(), file, index, pairs, eyes, chunk: None })
+    }
+
+    /// Takes up what was written since it was opened, of a recording that is still being written; how many pairs
+    /// came.
+    ///
+    /// # Errors
+    /// When the file cannot be read any more.
+    pub fn go_on(&mut self) -> Result<usize, RecordingError> {
+        let before = self.pairs.len();
+        self.index.go_on(&self.path)?;
+        self.pairs = pairs(self.index.of_topic(Topic::LeftEye), self.index.of_topic(Topic::RightEye));
+        self.eyes = by_pair(self.index.of_topic(Topic::Eyes));
+        Ok(self.pairs.len().saturating_sub(before))
     }
 
     /// The program that has written it.
@@ -119,12 +139,33 @@ impl Recording {
             (Some(left), Some(right)) => (i128::from(right) - i128::from(left)) as f64 * 1e-9,
             _ => 0.0,
         };
+        let eyes = self.eyes.get(&(left_place.at, left_place.sequence)).copied();
+        let eyes = eyes.map(|place| self.eyes_then(place)).transpose()?.unwrap_or_default();
         Ok(RecordedPair {
+            eyes,
             at: self.moment(left_place)?,
             number: left_place.sequence,
             images: [left, right].map(|image| Jpeg(image.data.to_vec())),
             right_later_s,
         })
+    }
+
+    /// How the eyes were; numbers that cannot be are not known.
+    fn eyes_then(&mut self, place: Place) -> Result<EyesThen, RecordingError> {
+        let then: Result<EyesThen, _> = serde_json::from_slice(self.bytes(place)?);
+        then.map(EyesThen::as_can_be).map_err(|error| self.damaged(&error.to_string()))
+    }
+
+    /// Where the left eye was in the robot each time that was written: rows of a matrix 4 by 4 that takes points (m)
+    /// of the left eye there.
+    ///
+    /// # Errors
+    /// When the file cannot be read any more.
+    pub fn robot_from_left(&mut self) -> Result<Vec<Told<[[f64; 4]; 4]>>, RecordingError> {
+        let told = self.all(Topic::Transforms, |recording, place| {
+            recording.message::<FrameTransforms>(place).map(|told| frames::robot_from_left(&told))
+        })?;
+        Ok(told.into_iter().filter_map(|told| Some(Told { at: told.at, what: told.what? })).collect())
     }
 
     /// All readings of joints.
@@ -218,8 +259,12 @@ fn damaged(path: &Path, what: &str) -> RecordingError {
 
 /// Images of the same time of the log; one without a partner is left out.
 fn pairs(left: &[Place], right: &[Place]) -> Vec<[Place; 2]> {
-    let partners: BTreeMap<(u64, u32), Place> =
-        right.iter().map(|place| ((place.at, place.sequence), *place)).collect();
+    let partners = by_pair(right);
     let partner = |left: &Place| Some([*left, *partners.get(&(left.at, left.sequence))?]);
     left.iter().filter_map(partner).collect()
+}
+
+/// By time and number of the pair that they belong to.
+fn by_pair(places: &[Place]) -> BTreeMap<(u64, u32), Place> {
+    places.iter().map(|place| ((place.at, place.sequence), *place)).collect()
 }

@@ -1,7 +1,7 @@
 //! One record of a file after the other.
 
 use std::fs::File;
-use std::io::{BufReader, Read};
+use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::ops::ControlFlow;
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOp
 
 use crate::error::RecordingError;
 
-/// Reads records, chunks as a whole, until `take` (what it is, its body) has enough, or the file is cut or
+/// Reads records from this byte on (0: from the beginning), chunks as a whole, until `take` (what it is, its body) has enough, or the file is cut or
 /// damaged: what stands before is whole.
 ///
 /// # Errors
@@ -17,11 +17,14 @@ use crate::error::RecordingError;
 pub(crate) fn each_record(
     file: &Path,
     longest: usize,
+    from: u64,
     mut take: impl FnMut(u8, &[u8]) -> ControlFlow<()>,
 ) -> Result<(), RecordingError> {
     let mut input = BufReader::with_capacity(1 << 20, File::open(file).map_err(RecordingError::io(file))?);
+    input.seek(SeekFrom::Start(from)).map_err(RecordingError::io(file))?;
     let options = LinearReaderOptions::default()
         .with_emit_chunks(true)
+        .with_skip_start_magic(from > 0)
         .with_skip_end_magic(true)
         .with_record_length_limit(longest);
     let mut reader = LinearReader::new_with_options(options);

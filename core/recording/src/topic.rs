@@ -19,11 +19,19 @@ pub enum Topic {
     Commands,
     /// What was seen in images, and where it is.
     Detections,
+    /// How the eyes were when a pair was taken: for how long they had been on, and how the head stood.
+    Eyes,
+    /// Where the eyes were in the robot.
+    Transforms,
+    /// What was seen, to be drawn over the image of the left eye.
+    LeftAnnotations,
+    /// The same of the right eye.
+    RightAnnotations,
 }
 
 impl Topic {
     /// All of them.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 12] = [
         Self::LeftEye,
         Self::RightEye,
         Self::LeftCalibration,
@@ -32,6 +40,10 @@ impl Topic {
         Self::Notes,
         Self::Commands,
         Self::Detections,
+        Self::Eyes,
+        Self::Transforms,
+        Self::LeftAnnotations,
+        Self::RightAnnotations,
     ];
 
     /// Its name in the file.
@@ -45,6 +57,10 @@ impl Topic {
             Self::Notes => "/notes",
             Self::Commands => "/commands",
             Self::Detections => "/detections",
+            Self::Eyes => "/eyes/state",
+            Self::Transforms => "/tf",
+            Self::LeftAnnotations => "/eyes/left/annotations",
+            Self::RightAnnotations => "/eyes/right/annotations",
         }
     }
 

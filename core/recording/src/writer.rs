@@ -10,11 +10,13 @@ use foxglove::Encode;
 use jiff::{SignedDuration, Timestamp};
 use mcap::records::MessageHeader;
 use mcap::{Attachment, WriteOptions, Writer};
-use plumbline_model::{Eye, StereoCameras};
+use plumbline_model::{Eye, EyesThen, StereoCameras};
 use serde::Serialize;
 
 use crate::error::RecordingError;
+use crate::frames::{self, EyePlaces};
 use crate::messages::{self, JointReading, Note};
+use crate::outlines::{self, Outline};
 use crate::topic::Topic;
 
 /// A chunk is closed this long after it was begun.
@@ -162,6 +164,45 @@ impl RecordingWriter {
         self.put(Topic::RightEye, at, sequence, &messages::image(Eye::Right, right_at, right.0))?;
         self.counts.messages -= 2;
         self.counts.pairs += 1;
+        Ok(())
+    }
+
+    /// Writes how the eyes were when the pair of this time and number was taken; where nothing is known of that,
+    /// nothing is written.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn eyes(
+        &mut self,
+        at: Timestamp,
+        number: u64,
+        then: &EyesThen,
+        places: Option<&EyePlaces>,
+    ) -> Result<(), RecordingError> {
+        if !then.is_unknown() {
+            let sequence = (number & u64::from(u32::MAX)) as u32;
+            let refused = |error: serde_json::Error| RecordingError::Message {
+                topic: Topic::Eyes.name(),
+                what: error.to_string(),
+            };
+            let bytes = serde_json::to_vec(then).map_err(refused)?;
+            self.put_bytes(Topic::Eyes, at, sequence, &bytes)?;
+        }
+        match places {
+            Some(places) => self.put(Topic::Transforms, at, 0, &frames::transforms(at, places)),
+            None => Ok(()),
+        }
+    }
+
+    /// Writes what was seen in the images of the pair of this time: left, right.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn outlines(&mut self, at: Timestamp, seen: &[Vec<Outline>; 2]) -> Result<(), RecordingError> {
+        self.close_chunk_in_time(at)?;
+        for (topic, seen) in [Topic::LeftAnnotations, Topic::RightAnnotations].into_iter().zip(seen) {
+            self.put(topic, at, 0, &outlines::annotations(at, seen))?;
+        }
         Ok(())
     }
 

@@ -4,9 +4,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use jiff::{SignedDuration, Timestamp};
+use plumbline_model::EyesThen;
+use plumbline_model::robot::default_rig;
 use plumbline_recording::{
-    About, Attached, JointReading, Jpeg, Level, Note, Recording, RecordingError, RecordingWriter, Topic,
-    Whose,
+    About, Attached, EyePlaces, JointReading, Jpeg, Level, Note, Recording, RecordingError, RecordingWriter,
+    Topic, Whose,
 };
 use serde_json::json;
 
@@ -221,4 +223,77 @@ fn a_clock_that_goes_back_loses_nothing() {
     let read: Vec<Timestamp> =
         (0..recording.pair_count()).map(|index| recording.pair(index).expect("readable").at).collect();
     assert_eq!(read, times.map(after));
+}
+
+#[test]
+fn how_the_eyes_were_is_read_with_each_pair_and_its_absence_is_no_zero() {
+    let folder = folder();
+    let file = folder.path().join("log.mcap");
+    let rig = default_rig();
+    let robot_from_left = rig.robot_from_left(&rig.home());
+    let places = EyePlaces { robot_from_left, right_from_left: rig.eyes.cameras.right_from_left };
+    let then = |number: u64| EyesThen {
+        on_s: (number > 0).then_some(600.0 + number as f64),
+        head_rad: (number < 3).then_some([0.1, -0.01 * number as f64]),
+    };
+    let mut writer = RecordingWriter::create(&file, start(), &about()).expect("begun");
+    for number in 0..5 {
+        let at = after(0.5 * number as f64);
+        writer.pair(at, number, images(number), None).expect("written");
+        // Of the fourth pair nothing is known.
+        let then = if number == 3 { EyesThen::default() } else { then(number) };
+        writer.eyes(at, number, &then, (number < 3).then_some(&places)).expect("written");
+    }
+    writer.finish().expect("finished");
+    let mut recording = Recording::open(&file).expect("a recording");
+    for number in [4, 0, 3, 1] {
+        let expected = if number == 3 { EyesThen::default() } else { then(number) };
+        assert_eq!(recording.pair(number as usize).expect("readable").eyes, expected, "pair {number}");
+    }
+    let told = recording.robot_from_left().expect("readable");
+    assert_eq!(told.len(), 3);
+    let matrix = robot_from_left.isometry.to_homogeneous();
+    for (row, values) in told[1].what.iter().enumerate() {
+        for (column, value) in values.iter().enumerate() {
+            assert!((value - matrix[(row, column)]).abs() < 1e-9, "{row}, {column}: {value}");
+        }
+    }
+    // One of an older version says nothing of it.
+    let mut older = Recording::open(&written(tempfile::tempdir().expect("a folder").path(), 1)).expect("one");
+    assert!(older.pair(0).expect("readable").eyes.is_unknown());
+    assert!(older.robot_from_left().expect("readable").is_empty());
+}
+
+#[test]
+fn what_cannot_be_said_of_the_eyes_is_not_known() {
+    let folder = folder();
+    let file = folder.path().join("log.mcap");
+    let mut writer = RecordingWriter::create(&file, start(), &about()).expect("begun");
+    writer.pair(start(), 7, images(7), None).expect("written");
+    let then = EyesThen { on_s: Some(-1.0), head_rad: Some([500.0, 0.0]) };
+    writer.eyes(start(), 7, &then, None).expect("written");
+    writer.finish().expect("finished");
+    let mut recording = Recording::open(&file).expect("a recording");
+    assert!(recording.pair(0).expect("readable").eyes.is_unknown());
+}
+
+#[test]
+fn a_recording_that_is_still_written_is_read_on() {
+    let folder = folder();
+    let file = written(folder.path(), 4);
+    let bytes = fs::read(&file).expect("there");
+    let growing = folder.path().join("growing.mcap");
+    // As a program finds it that looks now and then: cut anywhere.
+    fs::write(&growing, &bytes[..bytes.len() / 3]).expect("written");
+    let mut recording = Recording::open(&growing).expect("a recording");
+    let mut pairs = check(&mut recording);
+    assert!(pairs > 0 && !recording.is_whole());
+    assert_eq!(recording.go_on().expect("readable"), 0, "nothing has come");
+    for length in [bytes.len() / 2, bytes.len() / 2 + 1, bytes.len() * 3 / 4, bytes.len()] {
+        fs::write(&growing, &bytes[..length]).expect("written");
+        pairs += recording.go_on().expect("readable");
+        assert_eq!(check(&mut recording), pairs, "{length} bytes");
+    }
+    assert!(pairs == 40 && recording.is_whole());
+    assert_eq!(recording.go_on().expect("readable"), 0, "it has ended");
 }

@@ -4,8 +4,11 @@ use std::path::Path;
 use std::process::Command;
 
 use jiff::{SignedDuration, Timestamp};
+use plumbline_model::EyesThen;
 use plumbline_model::robot::default_rig;
-use plumbline_recording::{About, Attached, JointReading, Jpeg, Level, Note, RecordingWriter, Topic};
+use plumbline_recording::{
+    About, Attached, EyePlaces, JointReading, Jpeg, Level, Note, Outline, RecordingWriter, Topic,
+};
 use serde_json::{Value, json};
 
 /// Reads all messages with their own schemas, and says what they hold.
@@ -28,10 +31,14 @@ with open(sys.argv[1], "rb") as file:
             values.append([[j.name, j.position] for j in decoded.joints])
         elif schema.name == "foxglove.Log":
             values.append([decoded.level, decoded.message])
+        elif schema.name == "foxglove.FrameTransforms":
+            values.append([[t.parent_frame_id, t.child_frame_id, t.translation.z, t.rotation.w] for t in decoded.transforms])
+        elif schema.name == "foxglove.ImageAnnotations":
+            values.append([[p.type, [[c.x, c.y] for c in p.points]] for p in decoded.points] + [t.text for t in decoded.texts])
         elif schema.name == "foxglove.CameraCalibration":
             values.append([decoded.width, decoded.height, decoded.distortion_model, list(decoded.K), list(decoded.D)])
-    for _, _, message in reader.iter_messages(topics=["/commands"]):
-        found["messages"].setdefault("/commands", []).append(json.loads(message.data))
+    for _, channel, message in reader.iter_messages(topics=["/commands", "/eyes/state"]):
+        found["messages"].setdefault(channel.topic, []).append(json.loads(message.data))
     for attachment in reader.iter_attachments():
         found["attachments"][attachment.name] = attachment.data.decode()
 print(json.dumps(found))
@@ -46,8 +53,10 @@ fn read_by_python(file: &Path) -> Option<Value> {
         );
         return None;
     }
-    let topics =
-        Topic::ALL.map(Topic::name).into_iter().filter(|name| !["/commands", "/detections"].contains(name));
+    let topics = Topic::ALL
+        .map(Topic::name)
+        .into_iter()
+        .filter(|name| !["/commands", "/detections", "/eyes/state"].contains(name));
     let told = Command::new("python3")
         .args(["-c", READER])
         .arg(file)
@@ -87,10 +96,17 @@ fn the_python_package_reads_what_was_written() {
     }
     writer.note(at, &Note { level: Level::Error, text: "lost".to_owned() }).expect("written");
     writer.told(Topic::Commands, at, &json!({ "command": "stop" })).expect("written");
+    let default = default_rig();
+    let robot_from_left = default.robot_from_left(&default.home());
+    let places = EyePlaces { robot_from_left, right_from_left: cameras.right_from_left };
+    let then = EyesThen { on_s: Some(61.5), head_rad: None };
+    writer.eyes(at, 0, &then, Some(&places)).expect("written");
+    let seen = Outline { box_px: [10.0, 20.0, 30.0, 50.0], text: "tomato 0.94".to_owned() };
+    writer.outlines(at, &[vec![seen], vec![]]).expect("written");
     writer.finish().expect("finished");
 
     let Some(found) = read_by_python(&file) else { return };
-    assert_eq!(found["statistics"], 25 * 3 + 4);
+    assert_eq!(found["statistics"], 25 * 3 + 8);
     assert!(found["chunks"].as_u64().is_some_and(|chunks| chunks >= 3), "{}", found["chunks"]);
     assert_eq!(found["attachments"], json!({ "rig.toml": "x = 1" }));
     let messages = &found["messages"];
@@ -107,6 +123,16 @@ fn the_python_package_reads_what_was_written() {
     assert_eq!(messages["/notes"], json!([[4, "lost"]]));
     assert_eq!(messages["/commands"], json!([{ "command": "stop" }]));
     assert_eq!(found["schemas"]["/joints"], "foxglove.JointStates");
+    assert_eq!(messages["/eyes/state"], json!([{ "eyes_on_s": 61.5, "head_rad": null }]));
+    let [left, right] = [&messages["/tf"][0][0], &messages["/tf"][0][1]];
+    assert_eq!((&left[0], &left[1]), (&json!("robot"), &json!("left_eye_optical")));
+    assert_eq!((&right[0], &right[1]), (&json!("left_eye_optical"), &json!("right_eye_optical")));
+    let height_m = left[2].as_f64().expect("a number");
+    assert!((height_m - robot_from_left.isometry.translation.vector.z).abs() < 1e-9, "{height_m}");
+    // 2 is a closed line in Foxglove's schema.
+    let corners = json!([[10.5, 20.5], [30.5, 20.5], [30.5, 50.5], [10.5, 50.5]]);
+    assert_eq!(messages["/eyes/left/annotations"][0], json!([[2, corners], "tomato 0.94"]));
+    assert_eq!(messages["/eyes/right/annotations"][0], json!([]));
     let lens = &messages["/eyes/left/calibration"][0];
     assert_eq!((&lens[0], &lens[1], &lens[2]), (&json!(640), &json!(480), &json!("kannala_brandt")));
     let plumbline_model::CameraModel::Fisheye(left) = cameras.left.model else { panic!("NICO has fisheyes") };

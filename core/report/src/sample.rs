@@ -329,20 +329,27 @@ fn shoulder_sag() -> NamedEffect {
 }
 
 fn candidates() -> Vec<Candidate> {
-    let of = |id: &str, site: &str, probability: f64, knowledge: Knowledge| Candidate {
+    let of = |id: &str, site: &str, title: &str, probability: f64, knowledge: Knowledge| Candidate {
         id: id.to_owned(),
         site: site.to_owned(),
-        title: format!("{site}: {id}"),
+        title: title.to_owned(),
         probability,
         score_sigmas: 10.0 * probability,
         knowledge,
     };
+    let with_elbow = Knowledge::TradeOff(vec!["joint-zero@r_elbow_y".to_owned()]);
     vec![
-        of("joint-zero", "r_elbow_y", 0.97, Knowledge::Known),
-        of("joint-sag", "r_shoulder_y", 0.91, Knowledge::Known),
-        of("link-length", "r_lower_arm", 0.02, Knowledge::TradeOff(vec!["joint-zero@r_elbow_y".to_owned()])),
-        of("backlash", "r_elbow_y", 0.0, Knowledge::Dead),
-        of("finger-roll", "tip", 0.0, Knowledge::Flat),
+        of("joint-zero", "r_elbow_y", "Elbow: zero position off", 0.97, Knowledge::Known),
+        of(
+            "joint-sag",
+            "r_shoulder_y",
+            "Shoulder, forward: bracket gives way under load",
+            0.91,
+            Knowledge::Known,
+        ),
+        of("link-length", "r_lower_arm", "Lower arm: wrong length", 0.02, with_elbow),
+        of("backlash", "r_elbow_y", "Elbow: play in the gears", 0.0, Knowledge::Dead),
+        of("finger-roll", "tip", "fingertip rolls on the glass", 0.0, Knowledge::Flat),
     ]
 }
 

@@ -2,7 +2,7 @@
 //! leaves.
 
 use plumbline_gap::finding::FoundParameter;
-use plumbline_gap::parameter_words;
+use plumbline_gap::{number, parameter_units, parameter_words};
 
 /// A unit that is printed, and how much of it an SI unit is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,87 +13,34 @@ pub struct Printed {
 
 const DEGREES: f64 = 180.0 / std::f64::consts::PI;
 
-/// Endings of parameter names with what is printed for them; the longest come first.
-const ENDINGS: [(&str, Printed); 14] = [
-    ("_nm_per_rad", Printed { unit: "N m/rad", per_si: 1.0 }),
-    ("_rad_per_nm", Printed { unit: "°/N m", per_si: DEGREES }),
-    ("_m_per_n", Printed { unit: "mm/N", per_si: 1e3 }),
-    // How far a bowed glass is off at 100 mm from its middle.
-    ("_per_m", Printed { unit: "mm at 100 mm", per_si: 10.0 }),
-    ("_rad", Printed { unit: "°", per_si: DEGREES }),
-    ("_secs", Printed { unit: "s", per_si: 1.0 }),
-    ("_kg", Printed { unit: "g", per_si: 1e3 }),
-    ("_nm", Printed { unit: "N m", per_si: 1.0 }),
-    ("_px", Printed { unit: "px", per_si: 1.0 }),
-    ("_m", Printed { unit: "mm", per_si: 1e3 }),
-    ("_s", Printed { unit: "s", per_si: 1.0 }),
-    ("ratio", Printed { unit: "%", per_si: 100.0 }),
-    ("fraction", Printed { unit: "%", per_si: 100.0 }),
-    ("weight", Printed { unit: "%", per_si: 100.0 }),
-];
-
-/// What is said before a parameter, and its unit.
-pub fn parameter(name: &str) -> (String, Printed) {
-    let share = name.starts_with("scale").then_some(Printed { unit: "%", per_si: 100.0 });
-    let of_end = ENDINGS.iter().find(|(ending, _)| name.ends_with(ending)).map(|(_, printed)| *printed);
-    let printed = share.or(of_end).unwrap_or(Printed { unit: "", per_si: 1.0 });
-    (parameter_words::said(name), printed)
-}
-
 /// A parameter with its interval, `offset 1.78 ± 0.17°`; the name only where there are several.
 pub fn with_interval(found: &FoundParameter, named: bool) -> String {
-    let (name, Printed { unit, per_si }) = parameter(&found.name);
+    let (name, unit) = (parameter_words::said(&found.name), parameter_units::of(&found.name));
     let label = if named { format!("{name} ") } else { String::new() };
     if let Some(text) = &found.text {
-        return format!("{name} {text}");
+        return format!("{name} {}", parameter_words::place(text));
     }
+    let per_si = unit.map_or(1.0, |unit| unit.per_si);
     let [value, low, high] = [found.value, found.low, found.high].map(|value| value * per_si);
+    let with_unit = |number: String| parameter_units::with_unit(&number, unit);
     if !(low.is_finite() && high.is_finite()) {
-        return format!("{label}{}{} (interval not known)", significant(value, 3), spaced(unit));
+        return format!("{label}{} (interval not known)", with_unit(significant(value, 3)));
     }
     let half = 0.5 * (high - low);
-    let digits = decimals(half);
+    let digits = number::decimals(half);
     let is_even = (0.5 * (high + low) - value).abs() <= 0.2 * half;
     if is_even {
-        return format!("{label}{} ± {}{}", fixed(value, digits), fixed(half, digits), spaced(unit));
+        return format!(
+            "{label}{}",
+            with_unit(format!("{} ± {}", fixed(value, digits), fixed(half, digits)))
+        );
     }
-    format!(
-        "{label}{}{} ({} to {})",
-        fixed(value, digits),
-        spaced(unit),
-        fixed(low, digits),
-        fixed(high, digits)
-    )
-}
-
-/// A degree sign and a percent sign stand at the number and with a thin gap.
-fn spaced(unit: &str) -> String {
-    match unit {
-        "" => String::new(),
-        _ if unit.starts_with('°') => unit.to_owned(),
-        _ => format!(" {unit}"),
-    }
-}
-
-/// Decimals that two digits of an uncertainty leave.
-fn decimals(uncertainty: f64) -> usize {
-    if !(uncertainty.is_finite() && uncertainty > 0.0) {
-        return 2;
-    }
-    (1 - uncertainty.log10().floor() as i32).clamp(0, 4) as usize
+    format!("{label}{} ({} to {})", with_unit(fixed(value, digits)), fixed(low, digits), fixed(high, digits))
 }
 
 /// With so many decimals, and a minus sign as wide as a plus.
 pub fn fixed(value: f64, decimals: usize) -> String {
-    if !value.is_finite() {
-        return "not known".to_owned();
-    }
-    let text = format!("{value:.decimals$}");
-    // −0.00 is zero.
-    if text.chars().all(|c| matches!(c, '-' | '0' | '.')) {
-        return text.replace('-', "");
-    }
-    text.replace('-', "−")
+    number::fixed(value, decimals).unwrap_or_else(|| "not known".to_owned())
 }
 
 /// With so many significant digits.
@@ -190,7 +137,7 @@ mod tests {
             "turned about its x axis by 0.57° (0.00 to 1.72)"
         );
         let sag = found("compliance_rad_per_nm", 0.02, 0.018, 0.022);
-        assert_eq!(with_interval(&sag, false), "1.15 ± 0.11°/N m");
+        assert_eq!(with_interval(&sag, false), "1.15 ± 0.11°/(N m)");
         assert_eq!(with_interval(&found("mass_kg", 0.118, 0.106, 0.13), false), "118 ± 12 g");
         assert_eq!(with_interval(&found("scale_u", 0.012, 0.010, 0.014), true), "wider by 1.20 ± 0.20 %");
         assert!(with_interval(&found("odd", f64::NAN, f64::NAN, 1.0), false).contains("not known"));

@@ -6,6 +6,7 @@ mod markdown;
 mod modules;
 mod rooms;
 mod shared;
+mod words;
 mod workspace;
 
 use std::collections::BTreeSet;

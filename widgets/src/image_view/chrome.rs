@@ -4,8 +4,10 @@ use egui::{Align2, Pos2, Rect, Ui, Vec2, vec2};
 
 use super::pixels::color_text;
 use super::{ImageTransform, ImageView};
+use crate::arrow_key::ArrowKey;
 use crate::format;
 use crate::glyph::{self, Glyph};
+use crate::overlay::Overlay;
 use crate::texture::Picture;
 use crate::theme::{self, ON_IMAGE, RIM, Role};
 
@@ -27,6 +29,13 @@ pub(super) fn paint(
         let below = if view.caption { 26.0 } else { 0.0 };
         let at = corner.left_top() + vec2(0.0, below);
         chip(ui, rect, at, Align2::LEFT_TOP, sentence, Some(Role::Warning));
+    }
+    let points_per_px =
+        view.overlay.and_then(Overlay::arrow_scale).map(|scale| transform.points_per_px * scale);
+    if let Some(key) = points_per_px.and_then(|points| ArrowKey::of(points, "px", 0.25 * rect.width())) {
+        let (painter, font) = (ui.painter_at(rect), theme::font(ui, &egui::TextStyle::Small));
+        let room = Align2::RIGHT_BOTTOM.anchor_size(corner.right_bottom(), key.size(&painter, &font));
+        key.paint(&painter, room, &font, RIM, ON_IMAGE.text_strong);
     }
     if let Some(at_px) = hover_px {
         let text = readout(view, transform, picture, at_px);

@@ -197,6 +197,14 @@ impl Overlay {
         self.push(Mark::Arrow { from_px, vector_px, scale, ink: ink.into() })
     }
 
+    /// How many times as long as what they stand for the arrows are; `None`: there are none.
+    pub fn arrow_scale(&self) -> Option<f64> {
+        self.marks.iter().find_map(|mark| match mark {
+            Mark::Arrow { scale, .. } => Some(*scale),
+            _ => None,
+        })
+    }
+
     /// Adds a word above a position.
     pub fn text(&mut self, at_px: [f64; 2], text: impl Into<String>, ink: impl Into<Ink>) -> &mut Self {
         self.push(Mark::Text { at_px, text: text.into(), anchor: Align2::CENTER_BOTTOM, ink: ink.into() })

@@ -7,6 +7,7 @@ use egui::{
 };
 
 use super::{BeforeAfter, Outline, Place, ScalarField, TableMark, TableScene, TableTransform, contour};
+use crate::arrow_key::ArrowKey;
 use crate::axis;
 use crate::colormap::ColorScale;
 use crate::format;
@@ -48,6 +49,8 @@ pub(super) fn map(
     let mut names: Vec<Rect> =
         scene.outlines.iter().filter_map(|outline| map.outline(outline, field.is_some())).collect();
     names.extend(scene.border.as_ref().and_then(|border| map.border(border)));
+    let key = map.place_for_key(scene, rect, &names);
+    names.extend(key.as_ref().map(|(_, room)| *room));
     if let Some((field, scale)) = field {
         map.contours(field, scale, names.clone());
     }
@@ -56,6 +59,13 @@ pub(super) fn map(
     }
     for mark in &scene.marks {
         map.mark(mark, scene.vector_scale, field.is_some(), &mut names);
+    }
+    if let Some((key, room)) = key {
+        let (fill, ink) = match field {
+            Some(_) => (theme::RIM, theme::ON_IMAGE.text_strong),
+            None => (tokens.backdrop, tokens.text_strong),
+        };
+        key.paint(&map.painter, room, &map.font, fill, ink);
     }
     map
 }
@@ -176,6 +186,28 @@ impl Map {
             .find(|chip| {
                 inside.contains_rect(*chip) && !taken.iter().any(|word| word.expand(4.0).intersects(*chip))
             })
+    }
+
+    /// The scale of the arrows, in a corner where no name stands; `None`: there are no arrows, or no room.
+    fn place_for_key(&self, scene: &TableScene, rect: Rect, names: &[Rect]) -> Option<(ArrowKey, Rect)> {
+        let both = |error: &BeforeAfter| error.before_m.is_some() || error.after_m.is_some();
+        let has_arrows =
+            scene.marks.iter().any(|mark| mark.vector_m.is_some()) || scene.before_after.iter().any(both);
+        if !has_arrows {
+            return None;
+        }
+        let points_per_mm = self.transform.points_per_m * scene.vector_scale * 1e-3;
+        let key = ArrowKey::of(points_per_mm, "mm", 0.2 * rect.width())?;
+        let size = key.size(&self.painter, &self.font);
+        let inside = rect.shrink(space::XS);
+        let torso = Rect::from_center_size(self.transform.to_screen([0.0, 0.0]), vec2(60.0, 24.0));
+        let corners = [Align2::RIGHT_TOP, Align2::RIGHT_BOTTOM, Align2::LEFT_BOTTOM, Align2::LEFT_TOP];
+        let rooms = corners.map(|corner| corner.align_size_within_rect(size, inside));
+        let is_free = |room: &Rect| {
+            let taken = names.iter().chain([&torso]).any(|taken| taken.expand(2.0).intersects(*room));
+            inside.expand(0.5).contains_rect(*room) && !taken
+        };
+        rooms.into_iter().find(is_free).map(|room| (key, room))
     }
 
     fn torso(&self) {

@@ -66,6 +66,7 @@ pub struct TouchPattern<'a> {
     editable: bool,
     selected: Option<usize>,
     error_scale: f64,
+    pixel_width_m: Option<f64>,
     height: Option<f32>,
 }
 
@@ -129,6 +130,7 @@ impl<'a> TouchPattern<'a> {
             editable: false,
             selected: None,
             error_scale: 1.0,
+            pixel_width_m: None,
             height: None,
         }
     }
@@ -154,6 +156,12 @@ impl<'a> TouchPattern<'a> {
     /// Magnification of the error arrows.
     pub fn error_scale(mut self, scale: f64) -> Self {
         self.error_scale = scale;
+        self
+    }
+
+    /// How wide a pixel is, so that the scale of the arrows is said as a length.
+    pub fn pixel_width_m(mut self, width_m: f64) -> Self {
+        self.pixel_width_m = Some(width_m);
         self
     }
 

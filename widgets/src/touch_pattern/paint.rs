@@ -3,6 +3,7 @@
 use egui::{Align2, Painter, Pos2, Rect, Response, Stroke, StrokeKind, TextStyle, Ui, pos2, vec2};
 
 use super::{PatternArea, PatternTransform, TouchMark, TouchMarkState, TouchPattern};
+use crate::arrow_key::ArrowKey;
 use crate::format;
 use crate::overlay;
 use crate::theme::{self, Tokens, space};
@@ -154,9 +155,27 @@ fn below(
             let text = if below { format!("{size}, the robot sits below") } else { size };
             word(rect.left(), Align2::LEFT_TOP, text, tokens.text_weak);
             if pattern.marks.iter().any(|mark| mark.error_px.is_some()) && rect.width() > 320.0 {
-                let text = format!("errors ×{}", format::significant(pattern.error_scale, 1));
-                word(rect.right(), Align2::RIGHT_TOP, text, tokens.difference);
+                scale(ui, transform, pattern, tokens);
             }
+        }
+    }
+}
+
+/// How long an error of a round length is drawn; where lengths are not known, how many times as long as it is.
+fn scale(ui: &Ui, transform: PatternTransform, pattern: &TouchPattern<'_>, tokens: &Tokens) {
+    let font = theme::font(ui, &TextStyle::Small);
+    let corner = transform.rect.right_bottom() + vec2(0.0, space::XS);
+    let points_per_px = f64::from(transform.vector([1.0, 0.0]).x) * pattern.error_scale;
+    let per_mm = pattern.pixel_width_m.map(|width_m| points_per_px / (1e3 * width_m));
+    match per_mm.and_then(|points_per_mm| ArrowKey::of(points_per_mm, "mm", 48.0)) {
+        Some(key) => {
+            let size = key.size(ui.painter(), &font);
+            let room = Align2::RIGHT_TOP.anchor_size(corner - vec2(0.0, 2.0), size);
+            key.paint(ui.painter(), room, &font, egui::Color32::TRANSPARENT, tokens.difference);
+        }
+        None => {
+            let text = format!("errors ×{}", format::significant(pattern.error_scale, 1));
+            ui.painter().text(corner, Align2::RIGHT_TOP, text, font, tokens.difference);
         }
     }
 }

@@ -77,7 +77,7 @@ impl GapAction {
             Self::ReportHtml => "Report of the gap (HTML)…",
             Self::ReportPdf => "Report of the gap (PDF)…",
             Self::Delete => "Delete the shown finding",
-            Self::Undo => "Go back to the robot model before",
+            Self::Undo => "Undo the last change of the robot model",
             Self::UseNominal => "Take all effects out of the robot model",
         }
     }

@@ -12,6 +12,7 @@ mod robot;
 pub mod timeline;
 mod touch;
 mod trials;
+pub mod undo;
 
 pub use commission::{CommissionAction, FIRST_CLASS, FIRST_PLACE_M};
 pub use detect::DetectAction;
@@ -92,7 +93,7 @@ pub enum Action {
     DeleteLast,
     /// Removes all pairs.
     DeleteAll,
-    /// Takes back the last change of the collection.
+    /// Takes back what was changed last on the screen that is open.
     Undo,
     /// Solves what is collected.
     Solve,
@@ -355,7 +356,7 @@ impl Action {
             Self::CollectRecording => "Use all pairs of the recording",
             Self::DeleteLast => "Delete the last pair",
             Self::DeleteAll => "Delete all pairs",
-            Self::Undo => "Undo the last change of the pairs",
+            Self::Undo => "Undo",
             Self::Solve => "Solve the collected pairs",
             Self::JudgeHealth => "Is the calibration still good?",
             Self::Accept => "Accept calibration",
@@ -434,7 +435,6 @@ impl Action {
             Self::ExplainDrift if view.gap.searching.is_some() => Some("the gap is being looked for".into()),
             Self::ExplainDrift => view.drift.unexplained.map(Cow::Borrowed),
             Self::DeleteLast | Self::DeleteAll => when(!eyes.collected.is_empty(), "no pair is collected"),
-            Self::Undo => when(eyes.can_undo, "nothing was changed"),
             Self::Solve if eyes.solving.is_some() => Some("a solution is being computed".into()),
             Self::Solve => when(!eyes.collected.is_empty(), "no pair is collected"),
             Self::JudgeHealth if eyes.health.state == HealthState::Judging => {

@@ -87,7 +87,7 @@ impl ModelsAction {
             Self::ExportTable(GraspTable::Height) => "Export grasp heights as CSV…",
             Self::ExportTable(GraspTable::Yaw) => "Export yaw angles as CSV…",
             Self::Discard => "Discard the proposed models",
-            Self::Undo => "Go back to the model before",
+            Self::Undo => "Undo the correction model in use",
             Self::UseNone => "Use no model",
         }
     }

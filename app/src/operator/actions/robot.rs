@@ -160,7 +160,12 @@ impl RobotAction {
             .or_else(|| {
                 when(robot.motion == MotionState::Limp, "servos take it only while all joints are limp")
             }),
-            Self::Scan | Self::SavePose => when(connected, "no robot is connected"),
+            // What was lost is looked for where it was.
+            Self::Scan => when(
+                connected || matches!(robot.connection, Connection::Lost { .. }),
+                "no robot is connected",
+            ),
+            Self::SavePose => when(connected, "no robot is connected"),
             Self::Move => move_refusal(view),
             Self::ForgetMove => when(robot.preview.is_some(), "no move is shown"),
             Self::ReleaseStop => when(robot.stopped, "STOP is not latched"),

@@ -2,13 +2,11 @@
 
 use std::borrow::Cow;
 
-use plumbline_engine::view::{EntryKind, Subject, TimelineEntry};
-use plumbline_engine::{
-    Command, EyesCommand, GapCommand, ModelsCommand, MountCommand, TimelineFormat, TouchCommand, View,
-};
+use plumbline_engine::view::TimelineEntry;
+use plumbline_engine::{Command, TimelineFormat, View};
 use serde::Serialize;
 
-use super::{GapAction, ModelsAction};
+use super::undo::{back_to, of_result};
 
 /// Of the timeline of results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -32,7 +30,7 @@ impl TimelineAction {
     /// What it is called everywhere.
     pub fn label(self) -> &'static str {
         match self {
-            Self::TakeBack => "Take back what was put in use last",
+            Self::TakeBack => "Undo what was put in use last",
             Self::Report(TimelineFormat::Html) => "Report of the setup (HTML)…",
             Self::Report(TimelineFormat::Pdf) => "Report of the setup (PDF)…",
             Self::Report(TimelineFormat::Csv) => "Timeline of results (CSV)…",
@@ -65,19 +63,11 @@ fn newest(view: &View) -> Option<&TimelineEntry> {
     view.timeline.entries.iter().rev().find(|entry| take_back(view, entry).is_some())
 }
 
-/// What takes an entry back; `None`: something came after it, it changed nothing, or nothing was before.
+/// What takes an entry back; `None`: something came after it, it changed nothing, or nothing is known that was
+/// before.
 pub fn take_back(view: &View, entry: &TimelineEntry) -> Option<Command> {
-    let changed = matches!(entry.kind, EntryKind::PutInUse | EntryKind::Found);
-    if !changed || !view.timeline.is_newest(entry) {
-        return None;
-    }
-    Some(match entry.subject {
-        Subject::Eyes => EyesCommand::UseEarlier { id: entry.id_before.clone() }.into(),
-        Subject::Mount | Subject::Screen => back_to(entry.subject, entry.id_before.as_ref())?,
-        Subject::Correction if ModelsAction::Undo.refusal(view).is_none() => ModelsCommand::Undo.into(),
-        Subject::Effects if GapAction::Undo.refusal(view).is_none() => GapCommand::Undo.into(),
-        Subject::Correction | Subject::Effects | Subject::Finding | Subject::Check => return None,
-    })
+    let undo = view.timeline.is_newest(entry).then(|| of_result(view, entry.subject))?;
+    undo.ok().map(|undo| undo.command)
 }
 
 /// What puts in use again what an entry put in use; `None`: it is in use, or its workflow keeps only the
@@ -89,17 +79,6 @@ pub fn use_again(view: &View, entry: &TimelineEntry) -> Option<Command> {
     });
     entry.id_after.as_ref().filter(|_| !is_in_use)?;
     back_to(entry.subject, entry.id_after.as_ref())
-}
-
-fn back_to(subject: Subject, id: Option<&String>) -> Option<Command> {
-    Some(match (subject, id.cloned()) {
-        (Subject::Eyes, id) => EyesCommand::UseEarlier { id }.into(),
-        (Subject::Mount, Some(id)) => MountCommand::UseEarlier { id }.into(),
-        (Subject::Mount, None) => MountCommand::UseNominal.into(),
-        (Subject::Screen, Some(id)) => TouchCommand::UseEarlierPlacement { id }.into(),
-        (Subject::Screen, None) => TouchCommand::UseNominalPlacement.into(),
-        (Subject::Correction | Subject::Effects | Subject::Finding | Subject::Check, _) => return None,
-    })
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ use plumbline_widgets::format;
 use super::sentence::{Guidance, say};
 use crate::operator::snapshot::gap::Verdict;
 use crate::operator::words::gap::{add_label, touch_label};
+use crate::operator::words::proof::{Proof, Worth};
 use crate::operator::{Action, GapAction, Screen};
 
 /// Below this the experiment goes before adding.
@@ -33,18 +34,18 @@ pub(super) fn gap(view: &View) -> Guidance {
     }
     match &gap.shown {
         Some(shown) if is_of_choice(gap) => found(view, shown),
-        _ => {
-            let sessions = match gap.chosen.len() {
-                1 => "the chosen session".to_owned(),
-                n => format!("{n} sessions"),
-            };
-            say(format!(
-                "Next: hold {sessions} against the robot's model ({}). Nothing moves.",
-                gap.model.name
-            ))
-            .then("Find what is missing", Action::Gap(GapAction::Find))
-        }
+        // A run that proves the effects is compared next.
+        _ => Proof::of_model(view).map_or_else(|| next(gap), |proof| proven(&proof)),
     }
+}
+
+fn next(gap: &GapView) -> Guidance {
+    let sessions = match gap.chosen.len() {
+        1 => "the chosen session".to_owned(),
+        n => format!("{n} sessions"),
+    };
+    say(format!("Next: hold {sessions} against the robot's model ({}). Nothing moves.", gap.model.name))
+        .then("Find what is missing", Action::Gap(GapAction::Find))
 }
 
 fn found(view: &View, shown: &ShownFinding) -> Guidance {
@@ -67,16 +68,35 @@ fn found(view: &View, shown: &ShownFinding) -> Guidance {
     }
 }
 
-/// What was found is in the model.
+/// What was found is in the model: touches with it and without it tell what it is worth.
 fn added(view: &View, shown: &ShownFinding, experiment: bool) -> Guidance {
+    if let Some(proof) = Proof::of_model(view) {
+        return proven(&proof);
+    }
     let closed = shown.finding.shown.closure.map_or_else(String::new, |closure| {
         format!(" On held-out rows {} of the gap is closed.", format::percent(closure))
     });
-    let guidance = say(format!("The model in use is {}.{closed}", view.gap.model.name));
-    if experiment {
-        return guidance.then(touch_label(view), Action::Gap(GapAction::NextExperiment));
+    let said = format!("The model in use is {}.{closed}", view.gap.model.name);
+    // Planning needs no robot, touching does.
+    if view.robot.connection.is_connected() && GapAction::Prove.refusal(view).is_none() {
+        return say(format!(
+            "{said} Next: new touches with the effects and without them. Nothing moves before you start them."
+        ))
+        .then("Prove it", Action::Gap(GapAction::Prove));
     }
-    guidance.then("Find what is left", Action::Gap(GapAction::Find))
+    if experiment {
+        return say(said).then(touch_label(view), Action::Gap(GapAction::NextExperiment));
+    }
+    say(said).then("Find what is left", Action::Gap(GapAction::Find))
+}
+
+/// What the touches say of the effects comes before everything else.
+fn proven(proof: &Proof) -> Guidance {
+    let guidance = say(format!("{} {}", proof.headline(), proof.figures()));
+    match proof.worth() {
+        Worth::Help | Worth::Untold => guidance.then("Find what is left", Action::Gap(GapAction::Find)),
+        Worth::Harm => guidance.warn().then("Take all effects out", Action::Gap(GapAction::UseNominal)),
+    }
 }
 
 /// Whether the shown finding is about the sessions that are chosen now.

@@ -19,7 +19,7 @@ pub(super) fn trouble(robot: &RobotView) -> Option<Guidance> {
         Connection::Lost { reason, .. } => {
             Some(say(reason.clone()).warn().then("Connect the robot…", connect))
         }
-        Connection::Connected { .. } => moving(&robot.motion).or_else(|| silent(robot)),
+        Connection::Connected { .. } => moving(robot).or_else(|| silent(robot)),
     }
 }
 
@@ -61,8 +61,11 @@ pub(super) fn let_go(robot: &RobotView) -> Option<Guidance> {
     })
 }
 
-fn moving(motion: &MotionState) -> Option<Guidance> {
-    let MotionState::Moving { what, fraction, remaining } = motion else { return None };
+fn moving(robot: &RobotView) -> Option<Guidance> {
+    let MotionState::Moving { what, fraction, remaining } = &robot.motion else { return None };
+    if robot.rests_on_the_way {
+        return Some(say(format!("Paused in the middle of {what}: the arm holds. Going on moves it.")));
+    }
     let far = fraction.map_or_else(String::new, |part| format!(", {}", format::percent(part)));
     let left = remaining.map_or_else(String::new, |left| format!(", {}", format::time_left(left)));
     Some(say(format!("Moving {what}{far}{left}. Esc or space stops.")))
@@ -106,7 +109,7 @@ pub(super) fn under_way(view: &View) -> Option<Guidance> {
     if !robot.connection.is_connected() || view.mount.step == StepState::Running {
         return None;
     }
-    moving(&robot.motion).or_else(|| shown_move(robot))
+    moving(robot).or_else(|| shown_move(robot))
 }
 
 pub(super) fn mount(view: &View) -> Guidance {

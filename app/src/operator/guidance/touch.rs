@@ -8,6 +8,7 @@ use plumbline_widgets::format;
 use super::robot;
 use super::sentence::{Guidance, say};
 use crate::operator::words::capitalized;
+use crate::operator::words::proof::{Proof, Worth};
 use crate::operator::{Action, Preset, Screen, TouchAction, is_under_way, needs_window};
 
 pub(super) fn touch(view: &View) -> Guidance {
@@ -104,7 +105,7 @@ fn planned(touch: &TouchView, plan: &PlanView) -> Guidance {
 /// What starting does: "Touch 80 targets".
 pub fn start_label(plan: &PlanView) -> String {
     match plan.options.purpose {
-        Purpose::PlaceScreen => format!("Touch the corners, {} touches", plan.reachable),
+        Purpose::PlaceScreen => format!("Touch the corners, {}", format::count(plan.reachable, "touch")),
         Purpose::Train | Purpose::Check => format!("Touch {}", format::count(plan.reachable, "target")),
     }
 }
@@ -158,24 +159,24 @@ fn finished(view: &View) -> Guidance {
     }
 }
 
-/// How well the finger lands: before → after where some were sent as the robot is described.
+/// How well the finger lands; what the effects are worth where touches were sent both ways.
 fn checked(view: &View, touched: &str) -> Guidance {
     let touch = &view.touch;
     let again = Action::Touch(TouchAction::Plan(Preset::Check));
-    let Some(after) = touch.figures else {
+    let Some(figures) = touch.figures else {
         return say(format!("{touched} checked: too few to say how well the finger lands."))
             .then("Plan new targets", again);
     };
-    let after = format::mm(after.mean_m);
-    let said = match touch.figures_described {
-        Some(before) => {
-            format!(
-                "{touched} checked: {} → {after} beside the target, on average.",
-                format::mm(before.mean_m)
-            )
-        }
-        None => format!("{touched} checked: the finger lands {after} beside the target, on average."),
-    };
+    if let Some(proof) = Proof::of_run(touch) {
+        let said = format!("{} {} It stands on the timeline.", proof.headline(), proof.figures());
+        return match proof.worth() {
+            Worth::Help => say(format!("{said} Next: grasp.")).then("Go to Grasp", Action::Go(Screen::Grasp)),
+            Worth::Untold => say(said).then("Go to Gap", Action::Go(Screen::Gap)),
+            Worth::Harm => say(said).warn().then("Go to Gap", Action::Go(Screen::Gap)),
+        };
+    }
+    let mean = format::mm(figures.mean_m);
+    let said = format!("{touched} checked: the finger lands {mean} beside the target, on average.");
     if touch.correct_with.is_some() {
         return say(format!("{said} It stands on the timeline. Next: grasp."))
             .then("Go to Grasp", Action::Go(Screen::Grasp));

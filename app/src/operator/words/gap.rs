@@ -3,9 +3,9 @@
 use plumbline_engine::View;
 use plumbline_widgets::format::{self, Quantity};
 
+use super::effect::{of_name, short};
 use crate::operator::snapshot::gap::{
-    Candidate, CoordinateComparison, Experiment, Finding, Knowledge, NamedEffect, Shown, ShownUnit, Unit,
-    Verdict, What,
+    Candidate, CoordinateComparison, Experiment, Finding, Knowledge, Shown, ShownUnit, Unit, Verdict, What,
 };
 
 /// Less of a gap than this is said to be none.
@@ -98,64 +98,6 @@ pub fn rest(finding: &Finding) -> (bool, String) {
     }
     let share = format::percent(left.share);
     (false, format!("{share} of the gap stays, and noise alone does not explain it."))
-}
-
-/// Parameters whose intervals hold zero, counted beside those that are told.
-pub fn not_told(told: usize, not_told: usize) -> Option<String> {
-    match (told, not_told) {
-        (_, 0) => None,
-        (0, 1) => Some("Its size is not told from zero.".to_owned()),
-        (0, count) => Some(format!("None of its {count} values is told from zero.")),
-        (_, 1) => Some("One more value is not told from zero.".to_owned()),
-        (_, count) => Some(format!("{count} more values are not told from zero.")),
-    }
-}
-
-/// "joint zero of the right elbow": the kind in its short name, and where it sits.
-pub fn short(effect: &NamedEffect) -> String {
-    named(&effect.id, &effect.site, &effect.title)
-}
-
-/// The same from its parts.
-pub fn named(id: &str, site: &str, title: &str) -> String {
-    let kind = id.replace('-', " ");
-    match title.split_once(": ") {
-        Some((whose, _)) if whose.to_lowercase().starts_with("every ") => {
-            format!("{kind} of {}", lower(whose))
-        }
-        Some((whose, _)) => format!("{kind} of the {}", lower(whose)),
-        None if matches!(site, "" | "screen" | "tip" | "base" | "eyes") => kind,
-        None if site == "right" => format!("{kind} of the right eye"),
-        None => format!("{kind} of the {}", plain(site)),
-    }
-}
-
-/// The same of an `id@site`, by the titles of those that were tried.
-pub fn of_name(name: &str, candidates: &[Candidate]) -> String {
-    let (id, site) = name.split_once('@').unwrap_or((name, ""));
-    let known = candidates.iter().find(|candidate| candidate.id == id && candidate.site == site);
-    named(id, site, known.map_or("", |candidate| &candidate.title))
-}
-
-/// "right forearm" of `forearm_r`: a site that has no title.
-fn plain(site: &str) -> String {
-    let side = |part: &str| match part {
-        "r" => Some("right"),
-        "l" => Some("left"),
-        _ => None,
-    };
-    let (sides, rest): (Vec<&str>, Vec<&str>) = site.split('_').partition(|part| side(part).is_some());
-    let sides = sides.into_iter().filter_map(side);
-    sides.chain(rest).collect::<Vec<_>>().join(" ")
-}
-
-/// Names of parts begin small inside of a sentence; abbreviations stay.
-fn lower(text: &str) -> String {
-    let mut letters = text.chars();
-    match (letters.next(), letters.clone().next()) {
-        (Some(first), Some(second)) if second.is_lowercase() => first.to_lowercase().chain(letters).collect(),
-        _ => text.to_owned(),
-    }
 }
 
 /// What the data say about one of the candidates: a word, and what it means.
@@ -251,18 +193,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn effects_are_called_by_kind_and_place() {
-        let title = "Right elbow: zero position off";
-        assert_eq!(named("joint-zero", "r_elbow_y", title), "joint zero of the right elbow");
-        assert_eq!(named("axis-skew", "", "Every joint: axis not square"), "axis skew of every joint");
-        assert_eq!(named("screen-tilt", "screen", "screen tilted or shifted"), "screen tilt");
-        let title = "right upper arm: wrong length";
-        assert_eq!(named("link-length", "right_upper_arm", title), "link length of the right upper arm");
-        // Without a title the site is read.
-        assert_eq!(named("link-length", "forearm_r", "wrong length"), "link length of the right forearm");
-    }
-
-    #[test]
     fn what_trades_against_a_candidate_is_called_by_its_title() {
         let candidate = Candidate {
             id: "joint-zero".to_owned(),
@@ -337,12 +267,5 @@ mod tests {
         }
         finding.unexplained.share = 0.16;
         assert!(rest(&finding).1.contains("of the gap stays, and noise alone does not explain it"));
-    }
-
-    #[test]
-    fn values_that_may_be_zero_are_counted() {
-        assert_eq!(not_told(3, 0), None);
-        assert_eq!(not_told(0, 1).as_deref(), Some("Its size is not told from zero."));
-        assert_eq!(not_told(2, 4).as_deref(), Some("4 more values are not told from zero."));
     }
 }

@@ -28,6 +28,10 @@ pub fn proposed(health: &EyesHealth) -> Option<String> {
         ProposalHealth::Undecided => {
             format!("Not offered: the proposed calibration cannot be told apart from the one in use. {both}")
         }
+        ProposalHealth::KnowsWhen => format!(
+            "The proposed calibration cannot be told apart from the one in use, but it says for how long the cameras had \
+             been on, which a correction by time needs. {both}"
+        ),
         ProposalHealth::Untold => {
             format!(
                 "With the proposed calibration the eyes are another distance apart, which cannot be seen without a \

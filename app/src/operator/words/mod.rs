@@ -1,9 +1,11 @@
 //! What several panels, the bottom line and the window say in the same words.
 
+pub mod effect;
 pub mod eyes;
 pub mod gap;
 pub mod grasp;
 pub mod health;
+pub mod proof;
 pub mod robot;
 pub mod timeline;
 pub mod trials;
@@ -17,6 +19,15 @@ use plumbline_engine::SourceSpec;
 pub fn capitalized(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// A reason or a warning as a sentence of its own. What begins with the name of a session or of a file keeps it.
+pub fn sentence(text: &str) -> String {
+    let first = text.split_whitespace().next().unwrap_or_default();
+    let is_name = first.ends_with(':') || first.trim_end_matches('.').contains(['/', '.', '_']);
+    let begun = if is_name { text.to_owned() } else { capitalized(text) };
+    let end = if begun.is_empty() || begun.ends_with(['.', '!', '?', '…']) { "" } else { "." };
+    format!("{begun}{end}")
 }
 
 /// What a source is called: the last parts of the paths.
@@ -49,6 +60,15 @@ pub fn clock(at: jiff::Timestamp) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn reasons_and_warnings_become_sentences() {
+        assert_eq!(sentence("row 7 lies far off"), "Row 7 lies far off.");
+        assert_eq!(sentence("Done."), "Done.");
+        assert_eq!(sentence("morning: row 7 lies far off"), "morning: row 7 lies far off.");
+        assert_eq!(sentence("t_secs goes backwards"), "t_secs goes backwards.");
+        assert_eq!(sentence(""), "");
+    }
 
     #[test]
     fn two_folders_of_one_parent_are_called_by_the_parent() {

@@ -9,8 +9,8 @@ use plumbline_widgets::{format, probability};
 use super::parts::finding;
 use super::state::Sort;
 use crate::operator::snapshot::gap::Candidate;
-use crate::operator::words::capitalized;
 use crate::operator::words::gap as words;
+use crate::operator::words::{capitalized, effect};
 use crate::panels::{PanelContext, padded};
 
 /// Every candidate with what the data say about it.
@@ -61,7 +61,7 @@ fn table(ui: &mut Ui, candidates: &[&Candidate], all: &[Candidate]) {
                 (format::fixed(candidate.score_sigmas, 1), candidate.score_sigmas.abs() < 3.0),
                 (word.to_owned(), word != "known"),
             ];
-            let name = capitalized(&words::named(&candidate.id, &candidate.site, &candidate.title));
+            let name = capitalized(&effect::named(&candidate.id, &candidate.site, &candidate.title));
             candidate_row(ui, columns, cells, Some(format!("{name}. {meaning}")));
         }
     });

@@ -10,8 +10,8 @@ use plumbline_widgets::probability::{ShareRow, share_rows};
 use plumbline_widgets::theme::{self, Role, space};
 
 use super::parts::{line, state};
-use crate::operator::words::clock;
 use crate::operator::words::gap as words;
+use crate::operator::words::{clock, sentence};
 use crate::operator::{GapAction, is_of_choice};
 use crate::panels::parts::action_button;
 use crate::panels::{PanelContext, padded};
@@ -184,7 +184,7 @@ fn compared(ui: &mut Ui, shown: &ShownFinding) {
     ));
     ui.add_space(space::S);
     for warning in &finding.warnings {
-        line(ui, Glyph::Warning, Role::Warning, warning);
+        line(ui, Glyph::Warning, Role::Warning, &sentence(warning));
     }
     left_out(ui, shown);
 }

@@ -9,8 +9,9 @@ use plumbline_widgets::parameter;
 use plumbline_widgets::theme::{self, Role, space};
 
 use crate::operator::GapAction;
-use crate::operator::words::clock;
+use crate::operator::words::effect::moved;
 use crate::operator::words::gap as words;
+use crate::operator::words::{capitalized, clock};
 use crate::panels::parts::action_button;
 use crate::panels::{PanelContext, padded};
 
@@ -50,33 +51,39 @@ fn model(ui: &mut Ui, model: &GapModelView) {
     ui.label(if model.effects.is_empty() {
         "Nominal: the robot's description as it is.".to_owned()
     } else {
-        format!("{}:", crate::operator::words::capitalized(&model.name))
+        format!("{}:", capitalized(&model.name))
     });
     let (named, shares): (Vec<_>, Vec<_>) = model.effects.iter().partition(|effect| effect.is_named);
-    named.into_iter().for_each(|effect| sizes(ui, effect));
+    named.iter().for_each(|effect| sizes(ui, effect));
+    if named.iter().any(|effect| effect.is_small()) {
+        ui.label(theme::small(ui, SMALL_NAMED));
+    }
     if shares.is_empty() {
         return;
     }
     let title = format!("Small shares of {}", plumbline_model::counted(shares.len(), "effect"));
-    let help = "No name is due to these. Each is drawn to zero as far as robots usually have it; together they let the arm err less on touches held out.";
-    let header = egui::CollapsingHeader::new(title).id_salt("small shares");
-    let response = header.show(ui, |ui| shares.into_iter().for_each(|effect| sizes(ui, effect)));
-    response.header_response.on_hover_text(help);
+    egui::CollapsingHeader::new(title).id_salt("small shares").show(ui, |ui| {
+        ui.label(theme::small(ui, SMALL_SHARES));
+        shares.into_iter().for_each(|effect| sizes(ui, effect));
+    });
 }
 
-/// An effect and its parameters on a line.
+/// Why small effects with a name stay.
+const SMALL_NAMED: &str = "Small effects stay in the model because the measurements tell them from noise; nobody would see the difference.";
+/// Why effects without a name are there.
+const SMALL_SHARES: &str = "No name is due to these. Each is drawn to zero as far as robots usually have it; they stay because together they let the arm err less on touches held out.";
+
+/// An effect, its parameters on a line, and what they are worth.
 fn sizes(ui: &mut Ui, effect: &AddedEffect) {
-    let sizes: Vec<String> = effect
+    let mut sizes: Vec<String> = effect
         .parameters
         .iter()
         .map(|(name, value, _)| format!("{} {}", parameter::words(name), parameter::value(name, *value)))
         .collect();
-    let text = if sizes.is_empty() {
-        effect.title.clone()
-    } else {
-        format!("{}: {}", effect.title, sizes.join(", "))
-    };
-    ui.label(text).on_hover_text(&effect.name);
+    sizes.extend(moved(effect));
+    let title = capitalized(&effect.title);
+    let text = if sizes.is_empty() { title } else { format!("{title}: {}", sizes.join(", ")) };
+    ui.label(text);
 }
 
 /// The gap of each model on the data that it was found on.
@@ -163,7 +170,10 @@ fn side_by_side(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let (Some(shown), Some(beside)) = (&gap.shown, &gap.beside) else { return };
     ui.add_space(space::S);
     theme::group_heading(ui, "Side by side");
-    egui::Grid::new("side by side").num_columns(3).spacing([space::L, 2.0]).show(ui, |ui| {
+    // Names of sessions are long: each column wraps in its third of the tile.
+    let column = (ui.available_width() - 2.0 * space::M) / 3.0;
+    let grid = egui::Grid::new("side by side").num_columns(3).spacing([space::M, 2.0]).max_col_width(column);
+    grid.show(ui, |ui| {
         ui.label("");
         ui.label(theme::strong(ui, "shown"));
         ui.label(theme::strong(ui, "the other"));

@@ -11,6 +11,7 @@ mod next;
 mod parts;
 mod points;
 mod shown;
+mod sizes;
 pub mod state;
 
 pub use inspector::show as show_inspector;

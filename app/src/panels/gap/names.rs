@@ -1,17 +1,21 @@
 //! What is missing, by name: the verdict, and cards of the effects that were found.
 
-use egui::{Checkbox, Frame, Grid, Margin, RichText, ScrollArea, Ui};
-use plumbline_engine::GapCommand;
+use egui::{Checkbox, Frame, Margin, RichText, ScrollArea, Ui};
 use plumbline_engine::view::ShownFinding;
+use plumbline_engine::{GapCommand, View};
+use plumbline_widgets::format;
 use plumbline_widgets::glyph::Glyph;
 use plumbline_widgets::probability::{self, ShareRow, probability_bar, share_rows};
 use plumbline_widgets::theme::{self, Role, space};
-use plumbline_widgets::{format, parameter};
 
 use super::parts::{finding, line, state};
+use super::sizes::sizes;
 use crate::operator::GapAction;
-use crate::operator::snapshot::gap::{Finding, NamedEffect, Shown, Verdict};
+use crate::operator::snapshot::gap::{Finding, NamedEffect, Verdict};
+use crate::operator::words::effect::runner_up;
 use crate::operator::words::gap as words;
+use crate::operator::words::proof::{Proof, Worth};
+use crate::operator::words::sentence;
 use crate::panels::parts::action_button;
 use crate::panels::{PanelContext, padded};
 
@@ -21,6 +25,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     padded(ui, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             state(ui, cx.view);
+            proven(ui, cx.view);
             verdict(ui, &shown.finding);
             ui.add_space(space::S);
             cards(ui, cx, &shown);
@@ -29,6 +34,19 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             add(ui, cx, &shown);
         });
     });
+}
+
+/// What touches with the effects and without them say of those in use: more than any finding.
+fn proven(ui: &mut Ui, view: &View) {
+    let Some(proof) = Proof::of_model(view) else { return };
+    let (sign, role) = match proof.worth() {
+        Worth::Help => (Glyph::Check, Role::Accepted),
+        Worth::Untold => (Glyph::Info, Role::Ink),
+        Worth::Harm => (Glyph::Warning, Role::Warning),
+    };
+    line(ui, sign, role, &proof.headline());
+    ui.label(theme::small(ui, proof.figures()));
+    ui.add_space(space::S);
 }
 
 /// So many effects have a card at once, the largest; the others are behind "more".
@@ -92,7 +110,7 @@ fn verdict(ui: &mut Ui, finding: &Finding) {
         ui.label(theme::small(ui, more));
     }
     for warning in finding.warnings.iter().take(MOST_WARNINGS) {
-        line(ui, Glyph::Warning, Role::Warning, warning);
+        line(ui, Glyph::Warning, Role::Warning, &sentence(warning));
     }
     if finding.warnings.len() > MOST_WARNINGS {
         let rest = format::count(finding.warnings.len() - MOST_WARNINGS, "more warning");
@@ -111,13 +129,12 @@ fn card(ui: &mut Ui, cx: &mut PanelContext<'_>, shown: &ShownFinding, i: usize) 
         .inner_margin(Margin::symmetric(12, 8));
     frame.show(ui, |ui| {
         ui.set_width(ui.available_width());
-        ui.horizontal(|ui| {
-            head(ui, cx, shown, i);
-            if added {
-                let text = RichText::new("in the model").color(Role::Accepted.color(tokens));
-                ui.label(text);
-            }
-        });
+        // Below each other: titles are long, and a tile is narrow.
+        head(ui, cx, shown, i);
+        if added {
+            let text = RichText::new("in the model").color(Role::Accepted.color(tokens));
+            ui.label(text);
+        }
         sizes(ui, effect, &shown.finding.shown);
         let role = if shown.finding.verdict == Verdict::NotInLibrary { Role::Weak } else { Role::Predicted };
         if effect.class.len() > 1 {
@@ -128,9 +145,8 @@ fn card(ui: &mut Ui, cx: &mut PanelContext<'_>, shown: &ShownFinding, i: usize) 
             probability_bar(ui, &effect.title, effect.probability, role)
                 .on_hover_text("Probability that this name is right");
         }
-        if let Some((runner_up, margin)) = &effect.runner_up {
-            let runner_up = words::of_name(runner_up, &shown.finding.candidates);
-            ui.label(theme::small(ui, format!("Runner-up: {runner_up}, {}.", odds(*margin))));
+        if let Some(said) = runner_up(effect, &shown.finding.candidates) {
+            ui.label(theme::small(ui, said));
         }
         if let Some(why) = &effect.not_addable {
             line(ui, Glyph::Warning, Role::Warning, &format!("Cannot be added: {why}"));
@@ -154,39 +170,6 @@ fn head(ui: &mut Ui, cx: &mut PanelContext<'_>, shown: &ShownFinding, i: usize) 
     ui.label(theme::strong(ui, &effect.title));
 }
 
-/// Parameters whose intervals exclude zero, the others counted, and what the effect does on the table.
-fn sizes(ui: &mut Ui, effect: &NamedEffect, shown: &Shown) {
-    let (told, zero): (Vec<_>, Vec<_>) = effect.parameters.iter().partition(|found| found.is_told());
-    let not_told = words::not_told(told.len(), zero.len());
-    Grid::new(("size", &effect.id, &effect.site)).num_columns(3).spacing([space::M, 2.0]).show(ui, |ui| {
-        for found in told {
-            ui.label(theme::weak(ui, parameter::words(&found.name)));
-            match &found.text {
-                Some(text) => {
-                    ui.label(text);
-                    ui.label("");
-                }
-                None => {
-                    ui.label(theme::strong(ui, parameter::value(&found.name, found.value)));
-                    let interval = parameter::interval(&found.name, found.low, found.high);
-                    ui.label(theme::weak(ui, format!("{interval} (95 %)")));
-                }
-            }
-            ui.end_row();
-        }
-        if effect.size_m > 0.0 {
-            ui.label(theme::weak(ui, "does"));
-            ui.label(words::error(shown, effect.size_m));
-            let sigmas = format::significant(effect.size_sigmas, 2);
-            ui.label(theme::weak(ui, format!("rms, {sigmas} × the noise")));
-            ui.end_row();
-        }
-    });
-    if let Some(said) = not_told {
-        ui.label(theme::small(ui, said));
-    }
-}
-
 /// All names that cannot be told apart, with their shares, and what would tell them apart.
 fn class(ui: &mut Ui, effect: &NamedEffect, role: Role) {
     let n = effect.class.len();
@@ -205,18 +188,6 @@ fn class(ui: &mut Ui, effect: &NamedEffect, role: Role) {
     if let Some(split) = &effect.split_by {
         line(ui, Glyph::Info, Role::Ink, &format!("To tell them apart: {split}."));
     }
-}
-
-/// "200 times less probable".
-fn odds(margin_log10: f64) -> String {
-    let odds = 10f64.powf(margin_log10);
-    if !odds.is_finite() || odds > 1e4 {
-        return "more than 10 000 times less probable".to_owned();
-    }
-    if odds < 1.5 {
-        return "about as probable".to_owned();
-    }
-    format!("{} times less probable", format::significant(odds, 2))
 }
 
 /// What stays.
@@ -266,7 +237,7 @@ fn add(ui: &mut Ui, cx: &mut PanelContext<'_>, shown: &ShownFinding) {
     } else if shown.added.iter().any(|added| *added) {
         ui.label(theme::small(
             ui,
-            "Its effects are in the model. Look for what is left, or prove it by touching new targets.",
+            "Its effects are in the model. Prove it by touching new targets with them and without them, or look for what is left.",
         ));
     }
     if addable.is_empty() && cx.view.gap.sizes_arm {
@@ -285,16 +256,4 @@ fn add(ui: &mut Ui, cx: &mut PanelContext<'_>, shown: &ShownFinding) {
             action_button(ui, cx, GapAction::UseNominal, "Take all effects out");
         }
     });
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn odds_are_said_in_words() {
-        assert_eq!(odds(0.05), "about as probable");
-        assert_eq!(odds(2.0), "100 times less probable");
-        assert!(odds(f64::INFINITY).starts_with("more than"));
-    }
 }

@@ -198,8 +198,8 @@ fn in_use(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         if let Some(before) = models.earlier.first() {
             let at = clock(before.accepted);
             let text = match before.method {
-                Some(method) => format!("Back to {} of {at}", method.name()),
-                None => "Back to no model".to_owned(),
+                Some(method) => format!("Undo: back to {} of {at}", method.name()),
+                None => "Undo: back to no model".to_owned(),
             };
             action_button(ui, cx, ModelsAction::Undo, &text);
         }

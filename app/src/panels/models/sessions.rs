@@ -115,8 +115,8 @@ fn has(ui: &mut Ui, data: &TouchData, noise: Option<&Repeats>) {
     };
     let noise_help = match noise {
         Some(noise) => format!(
-            "Spread of {} touches in {} of repeats, rms in the plane: no model can do better.",
-            noise.touches,
+            "Spread of {} in {} of repeats, rms in the plane: no model can do better.",
+            format::count(noise.touches, "touch"),
             format::count(noise.groups, "group"),
         ),
         None => "No touch was repeated, so the noise of touching is not known.".to_owned(),

@@ -8,7 +8,7 @@ use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::key_value::big_figure;
 use plumbline_widgets::theme::{self, Role, space};
 
-use crate::operator::{Action, MountAction};
+use crate::operator::{Action, MountAction, words};
 use crate::panels::{PanelContext, padded};
 
 /// Axes of the head: what moving along and turning about them means for an eye.
@@ -100,10 +100,10 @@ fn notes(ui: &mut Ui, proposal: &MountSummary) {
     let warning = Role::Warning.color(theme::tokens(ui));
     ui.add_space(space::S);
     for sentence in proposal.not_seen.iter().chain(&proposal.remarks) {
-        ui.label(RichText::new(sentence).color(warning));
+        ui.label(RichText::new(words::sentence(sentence)).color(warning));
     }
     for (name, why) in &proposal.rejected {
-        ui.label(theme::small(ui, format!("{name} is left out: {why}")));
+        ui.label(theme::small(ui, format!("{name} is left out: {why}.")));
     }
 }
 

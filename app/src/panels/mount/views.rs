@@ -73,8 +73,10 @@ fn row(ui: &mut Ui, cx: &mut PanelContext<'_>, seen: &HeadViewSummary) {
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 ui.spacing_mut().item_spacing.x = space::XS;
                 head_label(ui, seen.pan_rad, seen.tilt_rad).on_hover_text(format!(
-                    "{}: {} corners left, {} right",
-                    seen.name, seen.corners.0, seen.corners.1
+                    "{}: {} left, {} right",
+                    seen.name,
+                    format::count(seen.corners.0, "corner"),
+                    seen.corners.1
                 ));
                 if ui.available_width() > FIT_WIDTH {
                     fit(ui, left_out.map(|(_, why)| why.as_str()), seen.rms_px);

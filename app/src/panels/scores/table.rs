@@ -81,7 +81,7 @@ fn notes(ui: &mut Ui, table: &ScoreTable) {
     let set = super::parts::set_name(&table.set);
     ui.label(theme::small(
         ui,
-        format!("{} with {boxes} boxes of {set}.", format::count(table.images, "image")),
+        format!("{} with {} of {set}.", format::count(table.images, "image"), format::count(boxes, "box")),
     ));
     for row in &table.rows {
         for text in said_of(row) {

@@ -123,13 +123,17 @@ fn is_better(entry: &TimelineEntry) -> bool {
 fn undo_button(ui: &mut Ui, cx: &mut PanelContext<'_>, entry: &TimelineEntry) {
     let (command, label, help) = match (take_back(cx.view, entry), use_again(cx.view, entry)) {
         (Some(command), _) => {
-            (command, "Take back", "What was in use before is in use again. Nothing is deleted.")
+            (command, "Undo", "What was in use before is in use again. Nothing is deleted.")
         }
         (None, Some(command)) => (command, "Use again", "Puts this in use again. Nothing is deleted."),
         (None, None) => return,
     };
-    let button = Button::new(RichText::new(label).text_style(TextStyle::Small));
-    if ui.add(button).on_hover_text(help).clicked() {
+    let button = ui.add(Button::new(RichText::new(label).text_style(TextStyle::Small)));
+    // Each says which one it is of to whoever does not see the row.
+    button.widget_info(|| {
+        WidgetInfo::labeled(egui::Role::Button, true, format!("{label}: {}", words::title(entry)))
+    });
+    if button.on_hover_text(help).clicked() {
         cx.outbox.send(command);
     }
 }

@@ -6,7 +6,6 @@ use plumbline_model::session::Touchscreen;
 use plumbline_model::touch_plan::TouchArea;
 use plumbline_widgets::buttons::choice;
 use plumbline_widgets::empty::{EmptyState, Message};
-use plumbline_widgets::format;
 use plumbline_widgets::table_map::{Outline, Place, TableMap, TableMark, TableScene};
 use plumbline_widgets::theme::{self, Role, space};
 use plumbline_widgets::touch_pattern::{PatternArea, TouchMark, TouchMarkState, TouchPattern, error_scale};
@@ -92,6 +91,7 @@ fn glass(ui: &mut Ui, cx: &mut PanelContext<'_>, screen: &Touchscreen) {
         .editable(area.is_some() && !locked)
         .selected(cx.state.touch.chosen)
         .error_scale(scale)
+        .pixel_width_m(pitch_m[0])
         .show(ui);
     if let Some(number) = shown.clicked {
         choose(cx, number);
@@ -134,9 +134,8 @@ fn table(ui: &mut Ui, cx: &mut PanelContext<'_>, screen: &Touchscreen) {
     let lengths = touch.touches.iter().filter_map(error_length_m);
     let scale = error_scale(lengths, LONGEST_SHARE * screen.width_m);
     let scene = scene(touch, screen, cx.state.touch.chosen, scale);
-    let room = ui.available_height() - 18.0;
+    let room = ui.available_height();
     let shown = TableMap::new("Touches on the table", &scene).height(room.max(80.0)).show(ui);
-    ui.label(theme::small(ui, format!("Errors ×{}", format::significant(scale, 1))));
     let near = |at: [f64; 2]| {
         let distance = |one: &TouchState| {
             let place = one.target_place.coords;

@@ -12,6 +12,7 @@ use plumbline_widgets::theme::{self, Role, space};
 
 use super::parts::error_length_m;
 use super::words;
+use crate::operator::words::proof::Proof;
 use crate::operator::{Action, Screen, TouchAction, done_of, is_under_way, wanted};
 use crate::panels::parts::{action_button, warning};
 use crate::panels::{PanelContext, padded};
@@ -34,9 +35,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             head(ui, cx);
             ui.add_space(space::S);
             if let Some(found) = &cx.view.touch.figures {
-                if let Some(described) = &cx.view.touch.figures_described {
-                    proven(ui, described, found);
-                }
+                proven(ui, &cx.view.touch);
                 figures(ui, found);
                 ui.add_space(space::S);
             }
@@ -152,16 +151,21 @@ fn progress(ui: &mut Ui, touch: &TouchView) {
 }
 
 /// What the effects are worth: touches of the same places as the robot is described, and with them.
-fn proven(ui: &mut Ui, described: &TouchFigures, found: &TouchFigures) {
+fn proven(ui: &mut Ui, touch: &TouchView) {
+    let (Some(described), Some(found)) = (&touch.figures_described, &touch.figures) else { return };
     let half = |figures: &TouchFigures| 0.5 * (figures.mean_interval_m[1] - figures.mean_interval_m[0]);
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(space::L, space::XS);
         let before = format::mm_with(described.mean_m, half(described));
-        big_figure(ui, "as described", &before, Role::Ink);
+        big_figure(ui, "as described, ± 95 %", &before, Role::Ink);
         let after = format::mm_with(found.mean_m, half(found));
-        big_figure(ui, "with the effects", &after, Role::HeldOut);
+        big_figure(ui, "with the effects, ± 95 %", &after, Role::HeldOut);
     });
-    ui.label(theme::weak(ui, words::proof(described, found)));
+    // While touches are still to come nothing is proven.
+    if let Some(proof) = Proof::of_run(touch).filter(|_| touch.phase == TouchPhase::Finished) {
+        ui.label(theme::strong(ui, proof.headline()));
+        ui.label(theme::weak(ui, proof.figures()));
+    }
 }
 
 fn figures(ui: &mut Ui, found: &TouchFigures) {

@@ -3,9 +3,7 @@
 
 use plumbline_correction::{Touch, TouchData};
 use plumbline_model::robot::Rig;
-use plumbline_model::session::{
-    Chain as ChainNames, Manifest, RigReference, TouchRow, TouchTable, Touchscreen,
-};
+use plumbline_model::session::{Chain as ChainNames, Manifest, TouchRow, TouchTable, Touchscreen};
 use plumbline_model::{Direction, Pixel, Point, Robot, Session, measured_data};
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
@@ -61,22 +59,12 @@ pub fn data(count: usize, noise_m: f64, seed: u64) -> TouchData {
 /// A session of rows.
 pub fn session(rows: &[TouchRow]) -> Session {
     let joints: Vec<String> = JOINTS.map(str::to_owned).to_vec();
-    Session {
-        manifest: Manifest {
-            rig: RigReference::Named("nico".to_owned()),
-            started: jiff::Timestamp::UNIX_EPOCH,
-            operator: String::new(),
-            notes: String::new(),
-            touchscreen: Some(screen()),
-            chain: Some(ChainNames { tip: "right_index_tip".to_owned(), joints: joints.clone() }),
-            extra: Default::default(),
-        },
-        touches: Some(TouchTable::from_rows(joints, rows)),
-        localizations: None,
-        poses: None,
-        stereo: Default::default(),
-        log: None,
-    }
+    let manifest = Manifest {
+        touchscreen: Some(screen()),
+        chain: Some(ChainNames { tip: "right_index_tip".to_owned(), joints: joints.clone() }),
+        ..Manifest::of_rig("nico", jiff::Timestamp::UNIX_EPOCH)
+    };
+    Session { touches: Some(TouchTable::from_rows(joints, rows)), ..Session::new(manifest) }
 }
 
 /// A row with its target and without encoder angles.

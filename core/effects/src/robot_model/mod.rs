@@ -24,7 +24,8 @@ use plumbline_model::robot::ik::SolverError;
 use plumbline_model::session::Touchscreen;
 
 use crate::eyes::Eyes;
-use crate::rig_model::{Measured, RigModel, RigModelError};
+use crate::library::Kind;
+use crate::rig_model::{Measured, ModelEffect, RigModel, RigModelError};
 
 pub use arm::ModelArm;
 pub use mounted::Mounted;
@@ -125,6 +126,14 @@ impl RobotModel {
     /// Whether no effect is in force.
     pub fn is_nominal(&self) -> bool {
         self.added.is_nominal()
+    }
+
+    /// Whether an effect in force takes off what the eyes turn while they warm up.
+    pub fn has_growth_of_eyes(&self) -> bool {
+        let is_growth = |effect: &ModelEffect| {
+            Kind::of_id(&effect.id).is_some_and(|kind| kind.is_growth_of_eyes(effect.shape))
+        };
+        self.added.effects().iter().any(is_growth)
     }
 
     /// For people, short: "as described", "with 2 effects", "with 2 effects and small shares".

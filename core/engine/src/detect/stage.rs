@@ -22,6 +22,8 @@ use crate::live::{LiveSetup, NoSetup};
 pub struct DetectInput {
     /// The pair.
     pub frame: StereoFrame,
+    /// Which look it is: the same one is not taken twice.
+    pub turn: Turn,
     /// Of which source, counted.
     pub opened: u64,
     /// The detector.
@@ -32,6 +34,15 @@ pub struct DetectInput {
     pub photographs: bool,
     /// What places rest on, or why there are none.
     pub setup: Result<Arc<LiveSetup>, NoSetup>,
+}
+
+/// Which look at the live pairs it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Turn {
+    /// Every pair is looked at, as fast as that goes; its number.
+    Pair(u64),
+    /// The arm moves and gets the processor: a look in so long; which one since the first pair.
+    GivesWay(u64),
 }
 
 /// What came of it.
@@ -90,7 +101,7 @@ struct Said {
 impl Stage for DetectStage {
     type Input = DetectInput;
     type Output = DetectOutput;
-    type Key = (u64, u64, u64, Option<u64>, Arc<DetectionSettings>);
+    type Key = (Turn, u64, u64, Option<u64>, Arc<DetectionSettings>);
     const THREAD: WatchedThread = WatchedThread::Detect;
 
     fn stamp(input: &DetectInput) -> Stamp {
@@ -98,8 +109,10 @@ impl Stage for DetectStage {
     }
 
     fn key(input: &DetectInput) -> Self::Key {
-        let generation = input.setup.as_ref().ok().map(|setup| setup.generation);
-        (input.frame.stamp.seq, input.opened, input.detector.id, generation, input.settings.clone())
+        // With the head each posture would be another setup, and as many looks.
+        let stands = matches!(input.turn, Turn::Pair(_));
+        let generation = input.setup.as_ref().ok().filter(|_| stands).map(|setup| setup.generation);
+        (input.turn, input.opened, input.detector.id, generation, input.settings.clone())
     }
 
     fn process(&mut self, input: DetectInput) -> DetectOutput {

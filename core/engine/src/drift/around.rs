@@ -1,8 +1,9 @@
 //! What watching drift sees of the rest.
 
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
+use nalgebra::Matrix3;
 use plumbline_drift::{Reference, ReferenceKind};
 use plumbline_effects::{RobotModel, SeenUnder};
 use plumbline_model::robot::Posture;
@@ -20,6 +21,15 @@ const HAND_M: f64 = 0.04;
 /// A box is larger than the thing: what lies in its corners is the table.
 const BOX_SHARE: f64 = 0.8;
 
+/// The chessboard as both eyes saw it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BoardAt {
+    /// When.
+    pub captured_at: Instant,
+    /// Its outermost corners in the left and the right image, in order around it.
+    pub outlines: [[Pixel<Raw>; 4]; 2],
+}
+
 /// What the workflow can see of the rest.
 #[derive(Clone, Debug)]
 pub struct DriftAround {
@@ -27,6 +37,8 @@ pub struct DriftAround {
     pub is_live: bool,
     /// Whether it was recorded at another time.
     pub is_recorded: bool,
+    /// How the head stood in the newest pair of a recording, pan and tilt, rad; `None`: it does not say.
+    pub recorded_head_rad: Option<[f64; 2]>,
     /// Which source, counted.
     pub opened: u64,
     /// The robot as it is known in the world that is shown.
@@ -51,6 +63,8 @@ pub struct DriftAround {
     pub twin: Option<Arc<TwinView>>,
     /// What the detector found last.
     pub found: Option<Arc<DetectionsView>>,
+    /// Where the chessboard was seen last.
+    pub board: Option<BoardAt>,
 }
 
 impl DriftAround {
@@ -72,28 +86,47 @@ impl DriftAround {
             .then_some("It is not known how the head stands: look at its servos on the screen Robot.")
     }
 
-    /// Angles of all joints; a robot that is not connected stands as usual.
+    /// Angles of all joints; a robot that is not connected stands as usual, with the head of a recording as it stood.
     pub(super) fn posture(&self) -> Posture {
+        if let Some(head_rad) = &self.recorded_head_rad {
+            let rig = self.model.rig();
+            return rig.home().with(&[rig.eyes.pan, rig.eyes.tilt], head_rad);
+        }
         let connected = self.own_eyes && self.robot.connection.is_connected();
         let measured = self.robot.measured.clone().filter(|_| connected);
         measured.unwrap_or_else(|| self.model.rig().home())
     }
 
-    /// The touchscreen, things that were detected just now, and hands whose joints are known.
+    /// The touchscreen, the board and things that were seen just now, and hands whose joints are known.
     pub(super) fn references(&self, frame: &StereoFrame) -> Vec<Reference> {
         let posture = self.posture();
         let mut references: Vec<Reference> = self.hands(&posture);
-        if let Some(found) = &self.found {
-            let [a, b] = [found.stamp.captured_at, frame.stamp.captured_at];
-            if a.max(b).duration_since(a.min(b)) < SAME_MOMENT {
-                references.extend(things(&found.objects));
-            }
+        let is_of_now = |seen: Instant| {
+            let now = frame.stamp.captured_at;
+            seen.max(now).duration_since(seen.min(now)) < SAME_MOMENT
+        };
+        // The board lies on top of what is below it.
+        if let Some(board) = self.board.as_ref().filter(|board| is_of_now(board.captured_at)) {
+            references.extend(self.board(board, &posture));
+        }
+        if let Some(found) = self.found.as_ref().filter(|found| is_of_now(found.stamp.captured_at)) {
+            references.extend(things(&found.objects));
         }
         let screen = self.model.touchscreen();
         let middle = screen.point_at(screen.middle());
         let corners = screen.corners();
         references.extend(self.outlined("Touchscreen", ReferenceKind::Screen, middle, &corners, &posture));
         references
+    }
+
+    /// `None`: the eyes do not agree where it is.
+    fn board(&self, board: &BoardAt, posture: &Posture) -> Option<Reference> {
+        let [left, right] = &board.outlines;
+        let in_left = self.model.rig().eyes.cameras.triangulate(left[0], right[0])?;
+        let seen = SeenUnder { t_secs: self.eyes_on_s, background_m: None };
+        let place = self.model.place(&in_left, &Matrix3::zeros(), posture, &seen)?.point;
+        let outlines = [left.to_vec(), right.to_vec()];
+        Some(Reference { name: "Board".to_owned(), kind: ReferenceKind::Thing, place, outlines })
     }
 
     fn hands(&self, posture: &Posture) -> Vec<Reference> {

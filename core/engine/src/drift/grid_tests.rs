@@ -35,6 +35,7 @@ impl Desk {
         let around = DriftAround {
             is_live: true,
             is_recorded: false,
+            recorded_head_rad: None,
             opened: 1,
             model: Arc::new(RobotModel::nominal(default_rig())),
             own_eyes: true,
@@ -47,6 +48,7 @@ impl Desk {
             world: Some(World::Robot),
             twin: None,
             found: None,
+            board: None,
         };
         Self {
             room: DriftWorkflow::new(folder),
@@ -97,6 +99,7 @@ impl Desk {
                 right: image.clone(),
                 time_difference_s: None,
                 name: None,
+                beside: Default::default(),
             };
             self.with(|room, around, context| room.saw(&frame, around, context));
         }

@@ -17,7 +17,7 @@ mod watch;
 pub mod work;
 mod workflow;
 
-pub use around::DriftAround;
+pub use around::{BoardAt, DriftAround};
 pub use stage::{DriftInput, DriftOutput, DriftStage};
 pub use unjudged::Unjudged;
 pub use workflow::DriftWorkflow;

@@ -43,6 +43,7 @@ impl Desk {
         let around = DriftAround {
             is_live: true,
             is_recorded: false,
+            recorded_head_rad: None,
             opened: 1,
             model: Arc::new(RobotModel::nominal(default_rig())),
             own_eyes: false,
@@ -55,6 +56,7 @@ impl Desk {
             world: None,
             twin: None,
             found: None,
+            board: None,
         };
         Self {
             room: DriftWorkflow::new(Path::new("")),
@@ -88,7 +90,14 @@ impl Desk {
         self.around.eyes_on_s = self.around.eyes_on_s.map(|on_s| on_s + EVERY.as_secs_f64());
         let stamp = Stamp { seq: self.pairs, captured_at: self.time.instant };
         let [left, right] = images.clone();
-        let frame = StereoFrame { stamp, left, right, time_difference_s: None, name: None };
+        let frame = StereoFrame {
+            stamp,
+            left,
+            right,
+            time_difference_s: None,
+            name: None,
+            beside: Default::default(),
+        };
         self.with(|room, around, context| room.saw(&frame, around, context));
         let Some(input) = self.room.input() else { return false };
         let result = self.stage.process(input);
@@ -243,6 +252,7 @@ fn it_looks_seldom_and_waits_while_the_thread_is_at_work() {
         right,
         time_difference_s: None,
         name: None,
+        beside: Default::default(),
     };
     desk.time = desk.time.after(Duration::from_millis(500));
     desk.with(|room, around, context| room.saw(&frame, around, context));
@@ -394,4 +404,63 @@ fn what_looking_takes_of_a_processor() {
         1e2 * share
     );
     assert!(share <= 0.032, "{share}");
+}
+
+#[test]
+fn what_a_recording_says_of_time_and_head_is_used() {
+    let mut desk = Desk::new();
+    desk.around.is_recorded = true;
+    desk.around.recorded_head_rad = Some([0.2, -0.5]);
+    let posture = desk.around.posture();
+    let eyes = &desk.around.model.rig().eyes;
+    assert_eq!([posture[eyes.pan], posture[eyes.tilt]], [0.2, -0.5], "as the head stood then");
+    let still = desk.pair(0.0);
+    desk.ask(DriftCommand::Start);
+    desk.see(&still);
+    assert!(desk.view().course.as_ref().is_some_and(|course| course.from_switching_on));
+    assert_ne!(
+        desk.view().unexplained,
+        Some("this recording does not say when its cameras were switched on")
+    );
+    // It begins again at its end.
+    desk.around.eyes_on_s = Some(100.0);
+    desk.see(&still);
+    assert!(desk.said().iter().any(|text| text.contains("wound back")), "{:?}", desk.said());
+    // An older one says nothing of it.
+    desk.around.eyes_on_s = None;
+    desk.see(&still);
+    assert_eq!(
+        desk.view().unexplained,
+        Some("this recording does not say when its cameras were switched on")
+    );
+}
+
+#[test]
+fn the_board_is_a_reference_while_it_is_seen() {
+    let mut desk = Desk::new();
+    let model = desk.around.model.clone();
+    let posture = desk.around.posture();
+    let corners = [[0.3, 0.1], [0.3, -0.1], [0.45, -0.1], [0.45, 0.1]];
+    let seen = corners.map(|[x, y]| {
+        let corner = plumbline_model::Point::new(x, y, 0.0);
+        model.project(&corner, &posture, &plumbline_effects::SeenUnder::default()).expect("before both eyes")
+    });
+    let captured_at = desk.time.instant;
+    let outlines = [seen.map(|(left, _)| left), seen.map(|(_, right)| right)];
+    desk.around.board = Some(super::BoardAt { captured_at, outlines });
+    let frame = |after: Duration| StereoFrame {
+        stamp: Stamp { seq: 1, captured_at: captured_at + after },
+        left: Arc::new(RgbImage::new(8, 8)),
+        right: Arc::new(RgbImage::new(8, 8)),
+        time_difference_s: None,
+        name: None,
+        beside: Default::default(),
+    };
+    let board = |desk: &Desk, after: Duration| {
+        let all = desk.around.references(&frame(after));
+        all.into_iter().find(|reference| reference.name == "Board")
+    };
+    let found = board(&desk, Duration::from_millis(300)).expect("it was seen just now");
+    assert!(found.place.distance_m(&plumbline_model::Point::new(0.3, 0.1, 0.0)) < 1e-6, "{found:?}");
+    assert!(board(&desk, Duration::from_secs(60)).is_none(), "a minute ago it lay there");
 }

@@ -16,6 +16,8 @@ use crate::ground::notice::NoticeLevel;
 
 /// It looks no more often than this, by the clock of the eyes.
 pub(super) const EVERY: Duration = Duration::from_secs(2);
+/// Before the first look the board is looked for: where it is seen, it is watched, too.
+pub(super) const FIRST: Duration = Duration::from_secs(1);
 /// It takes no more than this share of the time that passes …
 const MOST_SHARE: f64 = 0.03;
 /// … but while it learns what is usual, which shall not take longer than a minute on a slow machine.
@@ -41,6 +43,8 @@ pub(super) struct Watch {
     /// How many times faster than a clock the eyes' one runs.
     pub pace: f64,
     pub pending: Option<Arc<DriftInput>>,
+    /// Whether anything has come of it yet.
+    pub has_looked: bool,
     pub told_alarms: usize,
     pub told_motions: usize,
     pub epipolar_px: Option<f64>,
@@ -59,6 +63,7 @@ impl Watch {
             due: now.instant,
             pace: around.clock_pace,
             pending: None,
+            has_looked: false,
             told_alarms: 0,
             told_motions: 0,
             epipolar_px: None,
@@ -97,6 +102,7 @@ impl Watch {
     /// as the eyes' clock.
     pub fn rest(&mut self, busy: Duration, now: Instant) {
         self.pending = None;
+        self.has_looked = true;
         let share = if self.monitor.band().is_some() { MOST_SHARE } else { MOST_SHARE_LEARNING };
         self.due = self.due.max(now + busy.div_f64(share * self.pace));
     }

@@ -12,7 +12,7 @@ use super::command::DriftCommand;
 use super::grid_room::GridRoom;
 use super::stage::{DriftInput, DriftOutput};
 use super::view::{DriftCourse, DriftView};
-use super::watch::{EVERY, Watch};
+use super::watch::{EVERY, FIRST, Watch};
 pub use super::work::Context;
 use super::work::{DriftResult, DriftWork};
 use crate::ground::jobs::JobId;
@@ -47,6 +47,16 @@ pub struct DriftWorkflow {
 }
 
 impl DriftWorkflow {
+    /// Whether it watches.
+    pub fn is_watching(&self) -> bool {
+        self.watch.is_some()
+    }
+
+    /// Whether the board is to be looked for: nothing is remembered yet.
+    pub fn looks_for_board(&self) -> bool {
+        self.watch.as_ref().is_some_and(|watch| !watch.has_looked)
+    }
+
     /// A pair has come.
     pub fn saw(&mut self, frame: &StereoFrame, around: &DriftAround, context: &mut Context<'_>) {
         let now = context.time;
@@ -60,7 +70,10 @@ impl DriftWorkflow {
         } else if watch.from_switching_on != around.eyes_on_s.is_some() {
             self.begin(around, now);
         } else if watch.went_back(around) {
-            let text = "The cameras were switched on again: watching drift begins anew.";
+            let text = match around.is_recorded {
+                true => "The recording was wound back: watching drift begins anew.",
+                false => "The cameras were switched on again: watching drift begins anew.",
+            };
             context.notices.add(NoticeLevel::Info, text);
             self.begin(around, now);
         }
@@ -173,7 +186,7 @@ impl DriftWorkflow {
             return Some("it is being worked at already; wait a moment");
         }
         if !watch.from_switching_on && around.is_recorded {
-            return Some("a recording does not say when its cameras were switched on");
+            return Some("this recording does not say when its cameras were switched on");
         }
         if !watch.from_switching_on {
             return Some(
@@ -249,7 +262,12 @@ impl Workflow for DriftWorkflow {
             DriftCommand::Start if !around.is_live => {
                 context.refuse("Nothing can be watched yet: open the eyes, the twin's, or a recording.");
             }
-            DriftCommand::Start => self.begin(around, context.time),
+            DriftCommand::Start => {
+                self.begin(around, context.time);
+                if let Some(watch) = &mut self.watch {
+                    watch.due = context.time.instant + FIRST;
+                }
+            }
             DriftCommand::Stop if self.watch.is_none() => context.refuse("Nothing is being watched."),
             DriftCommand::Stop => {
                 self.watch = None;

@@ -195,6 +195,7 @@ impl<'a> Hub<'a> {
         let mut happened = Vec::new();
         self.changed |= self.pipeline.collect(&mut self.state, now, &mut happened);
         self.changed |= !self.jobs.is_empty();
+        self.changed |= self.state.time_passes();
         let Self { jobs, state, .. } = self;
         jobs.retain(|id, job| match job.take_outcome() {
             Some(outcome) => {

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use plumbline_hardware::SourceSpec;
-use plumbline_model::Chessboard;
+use plumbline_model::{Chessboard, counted};
 
 use super::collection::CollectError;
 use super::command::{ExportFormat, Exported};
@@ -25,8 +25,8 @@ impl EyesWorkflow {
                 self.board_chosen = true;
                 self.board_seen = None;
                 if self.collection.pairs().len() < before {
-                    let text =
-                        format!("{before} pairs of the other board were put aside; undo brings them back.");
+                    let pairs = counted(before, "pair");
+                    let text = format!("Put aside, of the other board: {pairs}. Undo brings them back.");
                     context.notices.add(NoticeLevel::Info, text);
                 }
             }

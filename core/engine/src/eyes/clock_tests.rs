@@ -54,6 +54,7 @@ impl Desk {
             playing: true,
             looping: true,
             pairs_per_second: Some(30.0),
+            growth: Default::default(),
         };
         let is_recorded = matches!(spec, SourceSpec::Recording { .. });
         self.tell(SourceView {
@@ -113,8 +114,14 @@ impl Desk {
         let gray = Arc::new(RgbImage::new(640, 480));
         let stamp = Stamp { seq: self.pairs, captured_at: self.time.instant };
         self.pairs += 1;
-        let frame =
-            StereoFrame { stamp, left: gray.clone(), right: gray, time_difference_s: None, name: None };
+        let frame = StereoFrame {
+            stamp,
+            left: gray.clone(),
+            right: gray,
+            time_difference_s: None,
+            name: None,
+            beside: Default::default(),
+        };
         self.state.hold_time(Some(self.time));
         self.state.frame(self.opened, frame, self.time.instant);
         let input = self.state.drift_input().expect("it is looked at");

@@ -1,13 +1,14 @@
 //! Whether the calibration in use still holds, and whether a proposed one is better: ordinary pairs are gathered for some
-//! seconds and judge both, as `plumbline health` does.
+//! seconds and judge both, as `plumbline health` does. Whoever asks has an answer within ten seconds.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use plumbline_model::{StereoCalibration, StereoFrame};
 
+use super::health_by_itself::ByItself;
 use super::view::{EyesHealth, HealthState, HealthView, ProposalHealth};
-use super::work::{Context, EyesWork, Health, Pictures};
+use super::work::{Context, EyesWork, Health, HealthEnded, Pictures};
 use super::workflow::{EyesAround, EyesWorkflow};
 use crate::ground::jobs::JobId;
 use crate::source::view::{SourceStatus, SourceView};
@@ -16,16 +17,32 @@ use crate::source::view::{SourceStatus, SourceView};
 const PAIRS: usize = 4;
 /// … one in so long: what passes before the eyes is not in all of them.
 const EVERY: Duration = Duration::from_secs(1);
+/// Where pairs come slowly, those that came within this time are judged …
+const GATHERED_WITHIN: Duration = Duration::from_secs(5);
+/// … by the places that were matched within this time …
+const MATCHED_WITHIN: Duration = Duration::from_secs(9);
+/// … and whatever the machine does, whoever asked is told something within this time.
+const ANSWERED_WITHIN: Duration = Duration::from_secs(10);
+/// Told where nothing came of it in time.
+const NO_TIME: &str = "Not enough was seen in ten seconds, because this computer has too much to do: close other \
+     programs, or wait until the work in the bottom line has ended, and ask again.";
+
+/// When it was asked, and whether nobody did.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ask {
+    at: Instant,
+    pub by_itself: bool,
+}
 
 /// Which calibrations are judged.
 #[derive(Clone, Debug)]
-struct Of {
-    in_use: Arc<StereoCalibration>,
-    proposed: Option<Arc<StereoCalibration>>,
+pub(super) struct Of {
+    pub in_use: Arc<StereoCalibration>,
+    pub proposed: Option<Arc<StereoCalibration>>,
 }
 
 impl Of {
-    fn is(&self, other: &Self) -> bool {
+    pub(super) fn is(&self, other: &Self) -> bool {
         let same = |a: &Arc<StereoCalibration>, b: &Arc<StereoCalibration>| Arc::ptr_eq(a, b);
         let proposed = match (&self.proposed, &other.proposed) {
             (Some(a), Some(b)) => same(a, b),
@@ -37,7 +54,8 @@ impl Of {
 
 /// Pairs that are being gathered.
 #[derive(Clone, Debug)]
-struct Gathering {
+pub(super) struct Gathering {
+    pub ask: Ask,
     /// Of which source, counted.
     opened: u64,
     pairs: Vec<Pictures>,
@@ -47,8 +65,9 @@ struct Gathering {
 /// How far it is, and what was judged last.
 #[derive(Clone, Debug, Default)]
 pub(super) struct HealthRoom {
-    gathering: Option<Gathering>,
-    judging: Option<(JobId, Of)>,
+    pub gathering: Option<Gathering>,
+    pub judging: Option<(JobId, Of, Ask)>,
+    pub by_itself: ByItself,
     /// How judging ended last.
     ended: Option<(Of, HealthState)>,
     /// What was judged last: it stands while it is looked at again, and when nothing comes of that.
@@ -65,13 +84,23 @@ impl EyesWorkflow {
         let Some(newest) = &around.newest else {
             return context.refuse("There is no image yet. Open the eyes, or pairs that they took.");
         };
-        let pairs = vec![pictures(newest)];
+        let ask = Ask { at: context.time.instant, by_itself: false };
         if goes_on(&around.source) {
-            let due = context.time.instant + EVERY;
-            self.health.gathering = Some(Gathering { opened: around.source.opened, pairs, due });
+            self.gather(ask, newest, around);
         } else {
-            self.judge_pairs(pairs, around, context);
+            self.judge_pairs(vec![pictures(newest)], ask, around, context);
         }
+    }
+
+    /// Begins to gather pairs when nobody has asked.
+    pub(super) fn gather_by_itself(&mut self, frame: &StereoFrame, around: &EyesAround, now: Instant) {
+        self.gather(Ask { at: now, by_itself: true }, frame, around);
+    }
+
+    fn gather(&mut self, ask: Ask, frame: &StereoFrame, around: &EyesAround) {
+        let pairs = vec![pictures(frame)];
+        let (opened, due) = (around.source.opened, ask.at + EVERY);
+        self.health.gathering = Some(Gathering { ask, opened, pairs, due });
     }
 
     /// Whether pairs are being gathered.
@@ -82,17 +111,47 @@ impl EyesWorkflow {
     /// A pair has come while pairs are being gathered.
     pub fn saw(&mut self, frame: &StereoFrame, around: &EyesAround, context: &mut Context<'_>) {
         self.source_changed(around, context);
+        self.time_passes(around, context);
         let now = context.time.instant;
-        let Some(gathering) = &mut self.health.gathering else { return };
+        let Some(gathering) = &mut self.health.gathering else {
+            return self.look_by_itself(frame, around, context);
+        };
+        if gathering.ask.by_itself && around.arm_moves {
+            return self.put_off(now);
+        }
         if now < gathering.due {
             return;
         }
         gathering.pairs.push(pictures(frame));
         gathering.due = now + EVERY;
         if gathering.pairs.len() >= PAIRS
-            && let Some(gathering) = self.health.gathering.take()
+            && let Some(Gathering { pairs, ask, .. }) = self.health.gathering.take()
         {
-            self.judge_pairs(gathering.pairs, around, context);
+            self.judge_pairs(pairs, ask, around, context);
+        }
+    }
+
+    /// Whether somebody has waited for as long as anybody is to wait.
+    pub fn is_overdue(&self, now: Instant) -> bool {
+        let waits = |ask: &Ask, at_most: Duration| now.saturating_duration_since(ask.at) >= at_most;
+        let HealthRoom { gathering, judging, .. } = &self.health;
+        gathering.as_ref().is_some_and(|gathering| waits(&gathering.ask, GATHERED_WITHIN))
+            || judging.as_ref().is_some_and(|(_, _, ask)| waits(ask, ANSWERED_WITHIN))
+    }
+
+    /// What was seen by now is judged where no more is waited for; and where nothing comes of that, it is said.
+    pub fn time_passes(&mut self, around: &EyesAround, context: &mut Context<'_>) {
+        if !self.is_overdue(context.time.instant) {
+            return;
+        }
+        if let Some(Gathering { pairs, ask, .. }) = self.health.gathering.take() {
+            self.judge_pairs(pairs, ask, around, context);
+        } else if let Some((job, of, ask)) = self.health.judging.take() {
+            context.cancel(job);
+            self.put_off(context.time.instant);
+            if !ask.by_itself {
+                self.health.ended = Some((of, HealthState::Failed(NO_TIME.to_owned())));
+            }
         }
     }
 
@@ -106,23 +165,33 @@ impl EyesWorkflow {
         } else {
             return;
         };
+        if gathering.ask.by_itself {
+            return self.put_off(context.time.instant);
+        }
         self.health.gathering = None;
         context.refuse(why);
     }
 
-    fn judge_pairs(&mut self, pairs: Vec<Pictures>, around: &EyesAround, context: &mut Context<'_>) {
+    fn judge_pairs(
+        &mut self,
+        pairs: Vec<Pictures>,
+        ask: Ask,
+        around: &EyesAround,
+        context: &mut Context<'_>,
+    ) {
         let Some(of) = self.to_be_judged() else { return };
         let work = Health {
             pairs,
             in_use: of.in_use.clone(),
             proposed: of.proposed.clone(),
             rig: around.rig.clone(),
+            until: ask.at + MATCHED_WITHIN,
         };
-        self.health.judging = Some((context.start(EyesWork::Health(work)), of));
+        self.health.judging = Some((context.start(EyesWork::Health(work)), of, ask));
     }
 
     /// The calibration in use and the one proposed; `None`: none is in use.
-    fn to_be_judged(&self) -> Option<Of> {
+    pub(super) fn to_be_judged(&self) -> Option<Of> {
         let proposed = self.proposal.as_ref().map(|proposal| proposal.calibration.clone());
         let in_use = self.in_use()?.clone();
         Some(Of { proposed: proposed.filter(|proposed| !Arc::ptr_eq(proposed, &in_use)), in_use })
@@ -130,24 +199,39 @@ impl EyesWorkflow {
 
     fn stop_judging(&mut self, context: &mut Context<'_>) {
         self.health.gathering = None;
-        if let Some((job, _)) = self.health.judging.take() {
+        if let Some((job, ..)) = self.health.judging.take() {
             context.cancel(job);
         }
     }
 
     /// Judged, or why not.
-    pub(super) fn judged_health(&mut self, id: JobId, state: HealthState) {
-        let Some((_, of)) = self.health.judging.take_if(|(job, _)| *job == id) else { return };
+    pub(super) fn judged_health(&mut self, id: JobId, ended: HealthEnded, context: &mut Context<'_>) {
+        let HealthEnded { state, busy } = ended;
+        let Some((_, of, ask)) = self.health.judging.take_if(|(job, ..)| *job == id) else { return };
+        self.rest(busy, context.time.instant);
         if let HealthState::Judged(health) = &state {
             self.health.judged = Some((of.clone(), health.clone()));
+            self.tell_of_health(&of, health, ask, context);
         }
-        self.health.ended = Some((of, state));
+        // That nothing is seen at night is no news where nobody has asked.
+        if !ask.by_itself || matches!(state, HealthState::Judged(_)) || !self.has_ended(&of) {
+            self.health.ended = Some((of, state));
+        }
+    }
+
+    /// Whether these were judged.
+    pub(super) fn has_judged(&self, of: &Of) -> bool {
+        self.health.judged.as_ref().is_some_and(|(judged, _)| judged.is(of))
+    }
+
+    fn has_ended(&self, of: &Of) -> bool {
+        self.health.ended.as_ref().is_some_and(|(ended, _)| ended.is(of))
     }
 
     /// Nothing came of the work.
     pub(super) fn not_judged(&mut self, id: JobId, why: Option<&str>) {
-        if let Some((_, of)) = self.health.judging.take_if(|(job, _)| *job == id)
-            && let Some(why) = why
+        if let Some((_, of, ask)) = self.health.judging.take_if(|(job, ..)| *job == id)
+            && let Some(why) = why.filter(|_| !ask.by_itself)
         {
             self.health.ended = Some((of, HealthState::Failed(why.to_owned())));
         }
@@ -157,10 +241,15 @@ impl EyesWorkflow {
     pub(super) fn shown_health(&self) -> HealthView {
         let now = self.to_be_judged();
         let is_of_now = |of: &Of| now.as_ref().is_some_and(|now| of.is(now));
-        let gathered = self.health.gathering.as_ref().map(|gathering| gathering.pairs.len());
+        // Looking again by itself leaves what stands there.
+        let has_ended = now.as_ref().is_some_and(|now| self.has_ended(now));
+        let is_shown = |ask: &Ask| !ask.by_itself || !has_ended;
+        let gathering = self.health.gathering.as_ref().filter(|gathering| is_shown(&gathering.ask));
+        let gathered = gathering.map(|gathering| gathering.pairs.len());
+        let judging = self.health.judging.as_ref().filter(|(_, _, ask)| is_shown(ask));
         let ended = self.health.ended.as_ref().filter(|(of, _)| is_of_now(of));
         let judged = self.health.judged.as_ref().filter(|(of, _)| is_of_now(of));
-        let state = match (gathered, &self.health.judging) {
+        let state = match (gathered, judging) {
             (Some(pairs), _) => HealthState::Gathering { pairs, of: PAIRS },
             (None, Some(_)) => HealthState::Judging,
             (None, None) => ended.map_or(HealthState::NotAsked, |(_, state)| state.clone()),
@@ -171,7 +260,7 @@ impl EyesWorkflow {
     /// Why the proposal is not offered; `None`: it is, or nobody has judged it.
     pub(super) fn not_offered(&self) -> Option<&'static str> {
         match self.shown_health().judged?.proposed?.1 {
-            ProposalHealth::Better | ProposalHealth::Untold => None,
+            ProposalHealth::Better | ProposalHealth::Untold | ProposalHealth::KnowsWhen => None,
             ProposalHealth::Worse => Some(
                 "The proposed calibration fits what the eyes see worse than the one in use: it is not put in use. \
                  Discard it.",
@@ -185,7 +274,7 @@ impl EyesWorkflow {
 }
 
 /// Whether more pairs come by themselves.
-fn goes_on(source: &SourceView) -> bool {
+pub(super) fn goes_on(source: &SourceView) -> bool {
     let plays = source.replay.as_ref().is_none_or(|replay| replay.playing);
     source.status == SourceStatus::Running && !source.photographs && plays
 }

@@ -7,7 +7,10 @@ use image::{DynamicImage, GrayImage, RgbImage};
 use nalgebra::{Isometry3, Vector3};
 use plumbline_hardware::SourceSpec;
 use plumbline_model::robot::default_rig;
-use plumbline_model::{Stamp, StereoCalibration, StereoCameras, StereoFrame, Unattended};
+use plumbline_model::{
+    CalibrationOptions, Evidence, Stamp, StereoCalibration, StereoCameras, StereoFrame, Unattended,
+    default_board,
+};
 use plumbline_vision::health::turned;
 use plumbline_vision::synthetic::{Plane, Scene, granite_texture};
 use tempfile::TempDir;
@@ -58,6 +61,9 @@ impl Desk {
             source: Arc::new(source),
             twin_on_s: None,
             rig: default_rig(),
+            arm_moves: false,
+            is_watched: false,
+            is_corrected: false,
         };
         Self {
             room,
@@ -103,6 +109,34 @@ impl Desk {
         self.time = self.time.after(Duration::from_secs(1));
         let frame = frame(images, self.time);
         self.with(|room, around, context| room.saw(&frame, around, context));
+    }
+
+    /// So much time passes without a pair.
+    fn wait(&mut self, time: Duration) {
+        self.time = self.time.after(time);
+        if self.room.is_overdue(self.time.instant) {
+            self.with(|room, around, context| room.time_passes(around, context));
+        }
+    }
+
+    /// What is being judged ends.
+    fn end_judging(&mut self) {
+        let (id, work) = self.started.pop().expect("it is judged");
+        let result = work.run(&Unattended).expect("not cancelled");
+        self.with(|room, around, context| room.work_done(id, result, around, context));
+    }
+
+    /// A minute passes, a pair a second, and what is judged ends; how often that was.
+    fn minute(&mut self, images: &[Arc<RgbImage>; 2]) -> usize {
+        let mut judged = 0;
+        for _ in 0..60 {
+            self.see(images.clone());
+            if matches!(self.started.last(), Some((_, EyesWork::Health(_)))) {
+                self.end_judging();
+                judged += 1;
+            }
+        }
+        judged
     }
 
     /// The source has something new.
@@ -152,7 +186,14 @@ impl Desk {
 
 /// A recording that was paused.
 fn held_still() -> ReplayView {
-    ReplayView { position: Some(3), length: 9, playing: false, looping: true, pairs_per_second: None }
+    ReplayView {
+        position: Some(3),
+        length: 9,
+        playing: false,
+        looping: true,
+        pairs_per_second: None,
+        growth: Default::default(),
+    }
 }
 
 fn turned_by(cameras: &StereoCameras, pan_deg: f64) -> StereoCameras {
@@ -187,7 +228,7 @@ fn dark() -> [Arc<RgbImage>; 2] {
 
 fn frame([left, right]: [Arc<RgbImage>; 2], time: Time) -> StereoFrame {
     let stamp = Stamp { seq: 1, captured_at: time.instant };
-    StereoFrame { stamp, left, right, time_difference_s: None, name: None }
+    StereoFrame { stamp, left, right, time_difference_s: None, name: None, beside: Default::default() }
 }
 
 #[test]
@@ -303,4 +344,127 @@ fn what_was_judged_stands_while_it_is_judged_again_and_when_nothing_comes_of_tha
     assert!(is_refused(&mut desk), "in the dark nothing else is known");
     desk.propose(0.0);
     assert!(!desk.view().health.is_against_proposal(), "another one is not what was judged");
+}
+
+#[test]
+fn whoever_asks_has_an_answer_within_ten_seconds_however_slowly_pairs_come() {
+    let mut desk = Desk::new(0.0);
+    desk.ask(EyesCommand::JudgeHealth);
+    let asked = desk.time.instant;
+    desk.wait(Duration::from_millis(2500));
+    desk.see(seen());
+    desk.wait(Duration::from_secs(1));
+    assert_eq!(desk.view().health.state, HealthState::Gathering { pairs: 2, of: 4 });
+    // No more come: what is there is judged.
+    desk.wait(Duration::from_millis(600));
+    assert_eq!(desk.view().health.state, HealthState::Judging);
+    let [(_, EyesWork::Health(work))] = &desk.started[..] else { panic!("{:?}", desk.started) };
+    assert_eq!(work.pairs.len(), 2);
+    assert!(work.until < asked + Duration::from_secs(10), "what is matched until then is judged");
+    // The machine is busy with something else.
+    desk.wait(Duration::from_millis(4950));
+    let state = desk.view().health.state.clone();
+    assert!(desk.time.instant <= asked + Duration::from_millis(10_200));
+    assert!(
+        matches!(&state, HealthState::Failed(why) if why.contains("Not enough was seen") && why.contains("ask again")),
+        "{state:?}"
+    );
+    // What comes of it later is of nobody's question.
+    desk.end_judging();
+    assert_eq!(desk.view().health.state, state);
+    // Where time is over before a place was matched, that is an outcome.
+    desk.ask(EyesCommand::JudgeHealth);
+    (0..3).for_each(|_| desk.see(seen()));
+    let Some((id, EyesWork::Health(mut work))) = desk.started.pop() else { panic!("nothing is judged") };
+    work.until = Instant::now();
+    let result = EyesWork::Health(work).run(&Unattended).expect("not cancelled");
+    desk.with(|room, around, context| room.work_done(id, result, around, context));
+    let state = desk.view().health.state.clone();
+    assert!(matches!(&state, HealthState::Failed(why) if why.contains("close other programs")), "{state:?}");
+}
+
+#[test]
+fn a_proposal_is_judged_by_itself_but_not_while_the_arm_moves() {
+    let mut desk = Desk::new(0.0);
+    desk.see(seen());
+    desk.propose(0.6);
+    desk.around.arm_moves = true;
+    (0..8).for_each(|_| desk.see(seen()));
+    assert!(desk.started.is_empty() && !desk.room.wants_pairs());
+    desk.around.arm_moves = false;
+    (0..4).for_each(|_| desk.see(seen()));
+    assert!(desk.room.wants_pairs());
+    // It begins to move while pairs are gathered: they are let go.
+    desk.around.arm_moves = true;
+    desk.see(seen());
+    assert!(!desk.room.wants_pairs() && desk.said().is_empty(), "{:?}", desk.said());
+    desk.around.arm_moves = false;
+    (0..9).for_each(|_| desk.see(seen()));
+    desk.end_judging();
+    assert!(desk.view().health.is_against_proposal() && !desk.accepts(), "it is worse");
+    (0..30).for_each(|_| desk.see(seen()));
+    assert!(desk.started.is_empty(), "once is enough");
+}
+
+#[test]
+fn a_calibration_that_does_not_hold_is_told_once() {
+    let mut desk = Desk::new(0.6);
+    assert_eq!(desk.minute(&seen()), 1);
+    assert_eq!(desk.said(), Vec::<String>::new(), "once may be a hand before an eye");
+    // Its pace is that of this machine: no more than a small share of it.
+    let minutes = (1..60).take_while(|_| desk.minute(&seen()) == 0).count() + 1;
+    assert!(minutes >= 2, "it rests for two minutes at least");
+    let said = desk.said();
+    let [words] = &said[..] else { panic!("{said:?}") };
+    assert!(words.contains("does not hold any more") && words.contains("cm far"), "{words}");
+    assert!(!desk.view().health.judged.as_ref().expect("judged").in_use.is_good);
+    // Who asks reads it where he has asked.
+    assert!(!desk.health().in_use.is_good);
+    assert_eq!(desk.said().len(), 1);
+}
+
+#[test]
+fn nobody_is_disturbed_by_what_is_looked_at_by_itself() {
+    let mut desk = Desk::new(0.0);
+    let health = desk.health();
+    (0..4).for_each(|_| _ = desk.minute(&dark()));
+    assert_eq!(desk.said(), Vec::<String>::new());
+    assert_eq!(desk.view().health.state, HealthState::Judged(Arc::new(health)), "at night nothing is news");
+    // What watches drift, and what a law of time takes off, is none of it; nor is a recording.
+    let quiet: [fn(&mut EyesAround); 3] = [
+        |around| around.is_watched = true,
+        |around| around.is_corrected = true,
+        |around| {
+            Arc::make_mut(&mut around.source).replay = Some(ReplayView { playing: true, ..held_still() })
+        },
+    ];
+    for make_quiet in quiet {
+        let mut desk = Desk::new(0.6);
+        make_quiet(&mut desk.around);
+        let judged: usize = (0..5).map(|_| desk.minute(&dark())).sum();
+        assert_eq!(judged, 0);
+    }
+}
+
+#[test]
+fn one_that_cannot_be_told_apart_is_offered_where_it_alone_says_how_warm_the_eyes_were() {
+    let mut desk = Desk::new(0.0);
+    desk.propose(5e-4);
+    let proposal = desk.room.proposal.as_ref().expect("proposed");
+    let mut calibration = StereoCalibration::clone(&proposal.calibration);
+    calibration.evidence = Some(Evidence {
+        board: default_board(),
+        options: CalibrationOptions::default(),
+        observations: vec![],
+        dropped_pairs: vec![],
+        created: jiff::Timestamp::UNIX_EPOCH,
+        software: String::new(),
+        minutes_since_on: Some(20.0),
+        source: String::new(),
+    });
+    let calibration = Arc::new(calibration);
+    desk.room.proposal = Some(Arc::new(Proposal { calibration, ..Proposal::clone(proposal) }));
+    let health = desk.health();
+    assert_eq!(health.proposed.map(|(_, verdict)| verdict), Some(ProposalHealth::KnowsWhen), "{health:?}");
+    assert!(!desk.view().health.is_against_proposal() && desk.accepts());
 }

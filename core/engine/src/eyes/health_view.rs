@@ -79,4 +79,7 @@ pub enum ProposalHealth {
     Undecided,
     /// The eyes are another distance apart with it, which ordinary pairs do not show.
     Untold,
+    /// They cannot be told apart, but it alone says for how long the cameras had been on: a correction by time needs
+    /// that.
+    KnowsWhen,
 }

@@ -17,6 +17,7 @@ mod events;
 pub mod geometry;
 pub mod ghost;
 mod health;
+mod health_by_itself;
 #[cfg(test)]
 mod health_tests;
 mod health_view;

@@ -5,15 +5,19 @@ use std::time::Instant;
 
 use super::clock::is_live;
 use super::view::EyesView;
-use super::workflow::EyesWorkflow;
+use super::workflow::{EyesAround, EyesWorkflow};
 use crate::ground::step::StepState;
-use crate::source::view::SourceView;
 
 impl EyesWorkflow {
     /// What the window shows.
-    pub(super) fn shown(&self, source: &SourceView, now: Instant) -> EyesView {
-        let minutes_since_on =
-            if is_live(source) { self.clock.shown_min(now) } else { self.minutes_of_pairs };
+    pub(super) fn shown(&self, around: &EyesAround, now: Instant) -> EyesView {
+        let recorded = around.newest.as_ref().and_then(|newest| newest.beside.then?.on_s);
+        let minutes_since_on = if is_live(&around.source) {
+            self.clock.shown_min(now)
+        } else {
+            // By whole seconds, as of a clock that runs.
+            recorded.map(|on_s| on_s.floor() / 60.0).or(self.minutes_of_pairs)
+        };
         EyesView {
             step: self.step(),
             board: *self.board(),

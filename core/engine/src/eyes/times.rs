@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use plumbline_hardware::SourceSpec;
-use plumbline_model::StereoFrame;
+use plumbline_model::{EyesThen, StereoFrame};
 
 use super::clock::is_live;
 use super::view::Taken;
@@ -89,8 +89,11 @@ impl EyesWorkflow {
     }
 }
 
-/// When a pair was taken; `None`: it was not taken live.
+/// When a pair was taken; `None`: it was not taken live, and its recording does not say.
 pub(super) fn taken(frame: &StereoFrame, around: &EyesAround) -> Option<Taken> {
+    if let Some(then) = &frame.beside.then {
+        return taken_then(then);
+    }
     // Pairs of cameras and of the twin have no name yet.
     if frame.name.is_some() || !is_live(&around.source) {
         return None;
@@ -98,13 +101,18 @@ pub(super) fn taken(frame: &StereoFrame, around: &EyesAround) -> Option<Taken> {
     Some(around.twin_on_s.map_or(Taken::At(frame.stamp.captured_at), |on_s| Taken::After(on_s / 60.0)))
 }
 
+/// As its recording says of a pair.
+pub(in crate::eyes) fn taken_then(then: &EyesThen) -> Option<Taken> {
+    then.on_s.map(|on_s| Taken::After(on_s / 60.0))
+}
+
 #[cfg(test)]
 mod tests {
     use std::time::Duration;
 
     use image::RgbImage;
-    use plumbline_model::Stamp;
     use plumbline_model::robot::default_rig;
+    use plumbline_model::{Beside, Stamp};
 
     use super::super::view::CollectedPair;
     use super::*;
@@ -160,14 +168,37 @@ mod tests {
     #[test]
     fn pairs_of_the_twin_are_taken_by_the_clock_of_the_twin() {
         let source = SourceView { spec: Some(SourceSpec::Twin), ..SourceView::default() };
-        let around =
-            EyesAround { newest: None, source: Arc::new(source), twin_on_s: Some(600.0), rig: default_rig() };
+        let around = EyesAround {
+            newest: None,
+            source: Arc::new(source),
+            twin_on_s: Some(600.0),
+            rig: default_rig(),
+            arm_moves: false,
+            is_watched: false,
+            is_corrected: false,
+        };
         let gray = Arc::new(RgbImage::new(64, 48));
         let stamp = Stamp { seq: 0, captured_at: Instant::now() };
-        let frame =
-            StereoFrame { stamp, left: gray.clone(), right: gray, time_difference_s: None, name: None };
+        let frame = StereoFrame {
+            stamp,
+            left: gray.clone(),
+            right: gray,
+            time_difference_s: None,
+            name: None,
+            beside: Default::default(),
+        };
         assert_eq!(taken(&frame, &around), Some(Taken::After(10.0)));
         let named = StereoFrame { name: Some("01.png".to_owned()), ..frame };
         assert_eq!(taken(&named, &around), None, "a file was not taken just now");
+        let recorded = |on_s| {
+            let beside = Beside { then: Some(EyesThen { on_s, head_rad: None }), jpegs: None };
+            taken(&StereoFrame { beside, ..named.clone() }, &around)
+        };
+        assert_eq!(
+            recorded(Some(120.0)),
+            Some(Taken::After(2.0)),
+            "a recording says when its pairs were taken"
+        );
+        assert_eq!(recorded(None), None, "an older one does not");
     }
 }

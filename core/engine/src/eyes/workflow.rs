@@ -7,7 +7,8 @@ use std::time::Instant;
 use plumbline_model::default_board;
 use plumbline_model::robot::{Rig, default_rig};
 use plumbline_model::{
-    CalibrationOptions, Chessboard, StereoCalibration, StereoCameras, StereoFrame, Workspace,
+    CalibrationOptions, Chessboard, Corners, Pixel, Raw, StereoCalibration, StereoCameras, StereoFrame,
+    Workspace,
 };
 
 use super::auto_capture::AutoCapture;
@@ -38,6 +39,12 @@ pub struct EyesAround {
     pub twin_on_s: Option<f64>,
     /// The robot, for where it works.
     pub rig: Arc<Rig>,
+    /// Whether the arm before these eyes moves.
+    pub arm_moves: bool,
+    /// Whether drift is being watched.
+    pub is_watched: bool,
+    /// Whether a law of time takes off what the eyes have turned since they were calibrated.
+    pub is_corrected: bool,
 }
 
 /// The whole workflow.
@@ -151,6 +158,20 @@ impl EyesWorkflow {
     /// The calibration in use as it was accepted; `None`: not read yet. Inside `None`: none is in use.
     pub fn accepted(&self) -> Option<Option<&Arc<AcceptedCalibration>>> {
         self.is_known.then_some(self.in_use.as_ref())
+    }
+
+    /// When both eyes saw the board last, in the newest pair in which it was looked for, and its outermost corners in
+    /// order around it: left, right.
+    pub fn board_at(&self) -> Option<(Instant, [[Pixel<Raw>; 4]; 2])> {
+        let look = self.last_look.as_ref()?;
+        let (columns, rows) = (look.board.inner_columns as usize, look.board.inner_rows as usize);
+        let around = |corners: &Option<Corners>| -> Option<[Pixel<Raw>; 4]> {
+            let corners = corners.as_ref()?;
+            let last = (columns * rows).checked_sub(1)?;
+            let at = |index: usize| corners.get(index).copied().flatten();
+            Some([at(0)?, at(columns - 1)?, at(last)?, at(last + 1 - columns)?])
+        };
+        Some((look.frame.stamp.captured_at, [around(&look.left)?, around(&look.right)?]))
     }
 
     /// Pairs that are collected.
@@ -287,7 +308,7 @@ impl Workflow for EyesWorkflow {
     }
 
     fn view(&mut self, around: &EyesAround, moment: &Moment) -> Arc<EyesView> {
-        Arc::new(self.shown(&around.source, moment.now))
+        Arc::new(self.shown(around, moment.now))
     }
 
     fn restore(&mut self, _: &EyesAround, context: &mut Context<'_>) {
@@ -338,7 +359,7 @@ impl Workflow for EyesWorkflow {
             EyesResult::Solved(solved) => self.solved(solved),
             EyesResult::Opened(opened) => self.opened(opened),
             EyesResult::Accepted(accepted) => self.accepted_now(accepted),
-            EyesResult::Health(state) => self.judged_health(id, state),
+            EyesResult::Health(ended) => self.judged_health(id, ended, context),
             EyesResult::Exported(_) => {}
             EyesResult::Restored(restored) => self.restored(restored, context),
             EyesResult::UsedEarlier(restored) => {

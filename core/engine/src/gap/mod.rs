@@ -3,6 +3,7 @@
 //!
 //! [`GapWorkflow`] is driven by commands and by finished work; it owns no thread.
 
+pub mod at_tip;
 pub mod command;
 mod model;
 pub mod search;
@@ -16,7 +17,7 @@ pub mod view;
 pub mod work;
 mod workflow;
 
-pub use model::{name as model_name, report_history as history};
+pub use model::{name as model_name, report_history as history, view as model_view};
 pub use plumbline_effects::measurements::{Unit, What};
 pub use plumbline_gap::finding::{
     Candidate, Comparison, CoordinateComparison, Experiment, Finding, Knowledge, NamedEffect, NextExperiment,

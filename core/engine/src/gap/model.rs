@@ -1,7 +1,8 @@
 //! The model in use for people: its name, its effects, its steps.
 
-use plumbline_effects::RigModel;
 use plumbline_effects::rig_model::{Contents, Step, StepKind};
+use plumbline_effects::{Kind, RigModel};
+use plumbline_model::parameter_words;
 use plumbline_report::HistoryEntry;
 
 use super::view::{AddedEffect, GapModelView, ModelStep};
@@ -35,13 +36,16 @@ pub fn report_history(model: &RigModel) -> Vec<HistoryEntry> {
     history
 }
 
-/// What the window shows of a model.
-pub fn view(model: &RigModel) -> GapModelView {
-    let effects = model.effects().iter().map(|effect| AddedEffect {
+/// What the window shows of a model, and how far each of its effects moves what it is about
+/// ([`super::at_tip::moved_m`]).
+pub fn view(model: &RigModel, moved_m: &[Option<f64>]) -> GapModelView {
+    let effects = model.effects().iter().enumerate().map(|(i, effect)| AddedEffect {
         name: effect.name(),
         is_named: model.is_named(effect),
-        title: if effect.title.is_empty() { effect.name() } else { effect.title.clone() },
+        title: if effect.title.is_empty() { plain(&effect.name()) } else { effect.title.clone() },
         parameters: effect.parameters.iter().map(|p| (p.name.clone(), p.value, [p.low, p.high])).collect(),
+        is_of_eyes: Kind::of_id(&effect.id).is_some_and(Kind::is_of_eyes),
+        moved_m: moved_m.get(i).copied().flatten(),
     });
     GapModelView {
         name: name(model),
@@ -77,11 +81,13 @@ fn titles(model: &RigModel, step: &Step) -> String {
     }
 }
 
-/// `joint-zero@r_elbow_y` where nobody kept a title: "joint zero of r elbow y".
+/// `joint-zero@r_elbow_y` where nobody kept a title: "joint zero of the right elbow y".
 fn plain(name: &str) -> String {
-    let words = |text: &str| text.replace(['-', '_'], " ");
+    let words = |id: &str| id.replace('-', " ");
     match name.split_once('@') {
-        Some((id, site)) if !site.is_empty() => format!("{} of {}", words(id), words(site)),
+        Some((id, site)) if !site.is_empty() => {
+            format!("{} of the {}", words(id), parameter_words::place(site))
+        }
         _ => words(name.trim_end_matches('@')),
     }
 }
@@ -112,9 +118,14 @@ mod tests {
     #[test]
     fn steps_are_told_in_words_and_not_by_ids() {
         let model = model_with(&default_rig(), &[("axis-skew", "r_elbow_y", &[0.01, 0.0])]);
-        assert_eq!(view(&model).history[0].title, "axis skew of r elbow y added");
+        let shown = view(&model, &[Some(2e-4)]);
+        assert_eq!(shown.history[0].title, "axis skew of the right elbow y added");
+        assert_eq!(shown.effects[0].title, "axis skew of the right elbow y");
+        assert!(shown.effects[0].is_small() && !shown.effects[0].is_of_eyes);
         let mut titled = model;
         titled.contents.effects[0].title = "Right elbow: axis not square".to_owned();
-        assert_eq!(view(&titled).history[0].title, "Right elbow: axis not square added");
+        let shown = view(&titled, &[]);
+        assert_eq!(shown.history[0].title, "Right elbow: axis not square added");
+        assert!(!shown.effects[0].is_small(), "what is not known is not called small");
     }
 }

@@ -40,7 +40,7 @@ impl GapWorkflow {
             entries: self.findings.iter().map(|named| named.entry()).collect(),
             shown: self.shown_named().map(|named| Arc::new(self.shown_finding(named))),
             beside: beside.map(|named| Arc::new(self.shown_finding(named))),
-            model: self.model.as_ref().map(|model| model::view(model)).unwrap_or_default(),
+            model: self.model.as_ref().map(|model| model::view(model, &self.moved_m)).unwrap_or_default(),
             sizes_arm: self.sizes_arm(),
         };
     }

@@ -7,6 +7,7 @@ use jiff::Timestamp;
 use plumbline_gap::{Finding, Verdict};
 use plumbline_model::robot::Rig;
 
+use super::at_tip::SMALL_M;
 use super::command::GapModel;
 use crate::ground::jobs::JobId;
 use crate::ground::step::StepState;
@@ -119,6 +120,11 @@ pub struct AddedEffect {
     pub title: String,
     /// Parameters with their 95 % intervals, as the command line names them.
     pub parameters: Vec<(String, f64, [f64; 2])>,
+    /// Whether it is one of the eyes.
+    pub is_of_eyes: bool,
+    /// How far it moves the fingertip on the glass, or, of the eyes, where they see things there, rms, m; `None`:
+    /// nothing there shows it.
+    pub moved_m: Option<f64>,
 }
 
 /// A model that was in use, with what was known of its gap.
@@ -136,6 +142,13 @@ pub struct ModelStep {
     pub in_pixels: bool,
     /// Names of the sessions that it rests on.
     pub sessions: Vec<String>,
+}
+
+impl AddedEffect {
+    /// Whether it moves things by so little that nobody would see it.
+    pub fn is_small(&self) -> bool {
+        self.moved_m.is_some_and(|moved_m| moved_m < SMALL_M)
+    }
 }
 
 impl GapView {

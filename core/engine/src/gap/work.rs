@@ -9,11 +9,11 @@ use plumbline_model::robot::Rig;
 use plumbline_model::{JobContext, Session, counted, files};
 use plumbline_report::ReportContext;
 
-use super::model;
 use super::search::{SearchError, measured, search};
 use super::sessions::{self, stamps};
 use super::store::{KeptFinding, KeptSession, Named, Store};
 use super::view::GapSession;
+use super::{at_tip, model};
 use crate::ground::LongWork;
 use crate::ground::jobs::JobError;
 use crate::ground::sessions::title_of;
@@ -119,8 +119,8 @@ pub enum GapResult {
     Found(Arc<Named>),
     /// A finding is gone.
     Deleted(String),
-    /// A model is in use.
-    InUse(Arc<RigModel>),
+    /// A model is in use, and how far each of its effects moves what it is about, see [`at_tip::moved_m`].
+    InUse(Arc<RigModel>, Vec<Option<f64>>),
     /// The arm is no better off with small shares of all usual effects: the model stays. Id of the finding.
     NotSized(String),
     /// Written there.
@@ -138,6 +138,8 @@ pub struct Restored {
     pub changed: Vec<PathBuf>,
     /// The model in use; `None` when that cannot be told.
     pub model: Option<Arc<RigModel>>,
+    /// How far each of its effects moves what it is about.
+    pub moved_m: Vec<Option<f64>>,
     /// What could not be read, a sentence each.
     pub problems: Vec<String>,
 }
@@ -215,11 +217,13 @@ impl LongWork for GapWork {
                         .map_err(JobError::failed)?,
                 };
                 rig_models::save(&folder, &next, &rig).map_err(JobError::failed)?;
-                Ok(GapResult::InUse(Arc::new(next)))
+                let moved_m = at_tip::moved_m(&next, &rig);
+                Ok(GapResult::InUse(Arc::new(next), moved_m))
             }
             Self::Use { folder, rig, model, .. } => {
                 rig_models::save(&folder, &model, &rig).map_err(JobError::failed)?;
-                Ok(GapResult::InUse(model))
+                let moved_m = at_tip::moved_m(&model, &rig);
+                Ok(GapResult::InUse(model, moved_m))
             }
             Self::Report { finding, context, file, pdf } => {
                 write_report(&finding, &context, &file, pdf)?;
@@ -288,7 +292,7 @@ fn write_report(
 }
 
 /// Everything that can be read is; what cannot is told.
-fn restore(folder: &std::path::Path, rig: &Rig) -> Restored {
+fn restore(folder: &std::path::Path, rig: &Arc<Rig>) -> Restored {
     let mut problems = Vec::new();
     let sessions = sessions::list(&folder.join("sessions")).unwrap_or_else(|problem| {
         problems.push(problem.to_string());
@@ -308,6 +312,7 @@ fn restore(folder: &std::path::Path, rig: &Rig) -> Restored {
         sessions,
         findings: findings.into_iter().map(Arc::new).collect(),
         changed: changed(&watched),
+        moved_m: model.as_ref().map_or_else(Vec::new, |model| at_tip::moved_m(model, rig)),
         model,
         problems,
     }
@@ -330,7 +335,7 @@ impl GapResult {
             Self::Listed { sessions, .. } => format!("{}.", counted(sessions.len(), "session")),
             Self::Found(named) => named.kept.finding.sentence.clone(),
             Self::Deleted(_) => "The finding was deleted.".to_owned(),
-            Self::InUse(model) => format!("The model in use is {}.", model::name(model)),
+            Self::InUse(model, _) => format!("The model in use is {}.", model::name(model)),
             Self::NotSized(_) => "The model in use stays as it is.".to_owned(),
             Self::Written(file) => format!("The report was written to {}.", file.display()),
         }

@@ -42,6 +42,8 @@ pub struct GapWorkflow {
     pub(super) beside: Option<String>,
     /// `None`: not read yet, or the file cannot be used, so nothing is written over it.
     pub(super) model: Option<Arc<RigModel>>,
+    /// How far each of its effects moves what it is about.
+    pub(super) moved_m: Vec<Option<f64>>,
     changing: Option<JobId>,
     /// Findings whose arm is no better off with small shares of all usual effects.
     pub(super) not_sized: Vec<String>,
@@ -256,7 +258,7 @@ impl GapWorkflow {
         self.shown = restored.findings.first().map(|named| named.id.clone());
         self.findings = restored.findings;
         self.changed = restored.changed;
-        self.model = restored.model;
+        (self.model, self.moved_m) = (restored.model, restored.moved_m);
         self.choose_first(around);
         self.list_chosen(context);
     }
@@ -302,6 +304,7 @@ impl Workflow for GapWorkflow {
             shown: None,
             beside: None,
             model: None,
+            moved_m: Vec::new(),
             changing: None,
             not_sized: Vec::new(),
             seen: Seen::default(),
@@ -380,7 +383,7 @@ impl Workflow for GapWorkflow {
                     self.shown = self.findings.first().map(|named| named.id.clone());
                 }
             }
-            GapResult::InUse(model) => self.model = Some(model),
+            GapResult::InUse(model, moved_m) => (self.model, self.moved_m) = (Some(model), moved_m),
             GapResult::NotSized(id) => {
                 context.notices.add(NoticeLevel::Info, NOT_SIZED);
                 self.not_sized.push(id);

@@ -7,11 +7,12 @@ use std::time::{Duration, Instant};
 use plumbline_grasp::body::{closes, turning};
 use plumbline_grasp::tracks::Tracks;
 use plumbline_grasp::{Body, Halt, ServoState, Sight};
-use plumbline_hardware::joints::{JointReading, JointState, Unheard};
+use plumbline_hardware::joints::{JointState, Unheard};
 use plumbline_model::JobContext;
 use plumbline_model::robot::collision::{Allowance, Body as Solid, CollisionModel};
 use plumbline_model::robot::{JointIndex, Posture, Rig};
 
+use super::heard::{are_merely_late, are_newer, known, unknown};
 use super::sights::Sights;
 use super::tracks::LedTracks;
 use crate::robot::{GivenUp, LeadAnswer, LeadOrder, Leader, Reins};
@@ -27,6 +28,8 @@ const LONGEST: Duration = Duration::from_secs(60);
 const PAIR_WITHIN: Duration = Duration::from_secs(20);
 /// The angles of a moment have been read after this long.
 const READ_WITHIN: Duration = Duration::from_secs(1);
+/// Joints that this computer was too busy to hear in time are waited for so long.
+const HEARD_WITHIN: Duration = Duration::from_secs(10);
 /// After this long it is looked again whether joints have been read anew: a fraction of a cycle of the bus.
 const READ_AGAIN: Duration = Duration::from_millis(5);
 /// Fingers around a thing may come so much nearer to what it stands on than their shapes say, m: they
@@ -142,6 +145,23 @@ impl<'a> LedBody<'a> {
         }
     }
 
+    /// The same once all joints are heard: those that this computer is too busy to hear in time are waited for, and
+    /// nothing is moved meanwhile. Those that do not answer at all are not.
+    fn state_heard(&mut self) -> Result<Arc<JointState>, Halt> {
+        let began = Instant::now();
+        loop {
+            let state = self.state()?;
+            if !are_merely_late(&state) || began.elapsed() > HEARD_WITHIN {
+                return Ok(state);
+            }
+            if state.stopped {
+                return Err(Halt::Stopped);
+            }
+            self.may_go_on()?;
+            std::thread::sleep(ASKED_EVERY);
+        }
+    }
+
     /// The same, unless it must not go on: STOP, or somebody wants it to end.
     fn state_to_go_on(&mut self) -> Result<Arc<JointState>, Halt> {
         self.may_go_on()?;
@@ -218,7 +238,7 @@ impl Body for LedBody<'_> {
     fn servos(&mut self) -> Result<Vec<ServoState>, Halt> {
         let began = Instant::now();
         loop {
-            let state = self.state()?;
+            let state = self.state_heard()?;
             let servos = state.joints.iter().map(|reading| known(&state, reading)).collect::<Option<_>>();
             let servos = servos.ok_or_else(|| unknown(&self.rig, &state))?;
             let read: Vec<_> = state.joints.iter().map(|reading| reading.read_at).collect();
@@ -226,7 +246,7 @@ impl Body for LedBody<'_> {
                 self.given = read;
                 return Ok(servos);
             }
-            if began.elapsed() > READ_WITHIN {
+            if began.elapsed() > HEARD_WITHIN {
                 let what = Unheard::TooBusy.advice();
                 return Err(Halt::Lost(format!("the joints are not read any more: {what}")));
             }
@@ -332,37 +352,14 @@ impl LedBody<'_> {
                 return Ok(posture);
             }
             if when.elapsed() > READ_WITHIN {
-                let state = self.state()?;
-                return state.measured.clone().ok_or_else(|| unknown(&self.rig, &state));
+                let state = self.state_heard()?;
+                // Where the head stands decides where everything is that the eyes see.
+                let knows = state.knows(self.rig.eyes.pan) && state.knows(self.rig.eyes.tilt);
+                return state.measured.clone().filter(|_| knows).ok_or_else(|| unknown(&self.rig, &state));
             }
             std::thread::sleep(Duration::from_millis(10));
         }
     }
-}
-
-/// A servo as it was read last; `None` where it is not known where its joint is.
-fn known(state: &JointState, reading: &JointReading) -> Option<ServoState> {
-    Some(ServoState {
-        joint: reading.joint,
-        angle_rad: reading.angle_rad.filter(|_| state.knows(reading.joint))?,
-        load: reading.load,
-        current_a: reading.current_a,
-        temperature_c: reading.temperature_c,
-    })
-}
-
-/// Whether each was read after it was read before; nothing was read before the first time.
-fn are_newer(read: &[Option<Instant>], before: &[Option<Instant>]) -> bool {
-    read.iter().zip(before).all(|(read, before)| read > before)
-}
-
-fn unknown(rig: &Rig, state: &JointState) -> Halt {
-    let unheard = state.unknown.first();
-    let servo = unheard.and_then(|joint| rig.servo_of(*joint));
-    let which = servo.map_or_else(|| "a joint".to_owned(), |servo| servo.title.to_lowercase());
-    let is_late = unheard.is_some_and(|joint| state.late.contains(joint));
-    let why = if is_late { Unheard::TooBusy } else { Unheard::Silent };
-    Halt::Lost(format!("it is not known where {which} is: {}", why.advice()))
 }
 
 impl From<GivenUp> for Halt {
@@ -372,20 +369,5 @@ impl From<GivenUp> for Halt {
             GivenUp::Lost(what) => Self::Lost(what),
             GivenUp::Refused(what) => Self::Refused(what),
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn readings_are_new_where_every_joint_was_read_since() {
-        let then = Instant::now();
-        let at = |milliseconds| Some(then + Duration::from_millis(milliseconds));
-        assert!(are_newer(&[at(0), at(3)], &[]), "the first ones are");
-        assert!(are_newer(&[at(20), at(23)], &[at(0), at(3)]));
-        assert!(!are_newer(&[at(0), at(3)], &[at(0), at(3)]), "the same ones");
-        assert!(!are_newer(&[at(20), at(3)], &[at(0), at(3)]), "one of them was not heard in this cycle");
     }
 }

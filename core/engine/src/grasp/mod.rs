@@ -11,6 +11,7 @@ mod attempt;
 pub(crate) mod body;
 pub mod command;
 pub(crate) mod gates;
+mod heard;
 mod held;
 mod keeping;
 mod method;

@@ -1,6 +1,6 @@
 //! Whether an arm stands where it was sent before anything moves.
 
-use plumbline_grasp::attempt::HANGS_RAD;
+use plumbline_grasp::attempt::{FINGER_HANGS_RAD, HANGS_RAD};
 
 use super::around::GraspAround;
 use super::gates::{closed, doubtful, open};
@@ -9,8 +9,6 @@ use crate::robot::view::{JointView, MotionState};
 
 /// Faster than this a joint turns, rad/s.
 const TURNS_RAD_S: f64 = 0.1;
-/// Fingers press on what they hold, and stay behind, rad: as much as the grasp itself lets them.
-const FINGER_HANGS_RAD: f64 = 0.25;
 
 /// The arm and its fingers stand, where they were sent: some degrees of droop and play are as they should be.
 pub(super) fn rest(around: &GraspAround, arm: &str) -> Gate {
@@ -100,8 +98,8 @@ mod tests {
     #[test]
     fn fingers_may_press_on_what_they_hold_and_turn_and_hang_no_more_than_the_arm() {
         let of = |off_rad, speed_rad_s| rest(&but_for("r_indexfinger_x", off_rad, speed_rad_s), "right");
-        assert_eq!(of(-0.2, 0.0).state, GateState::Open, "it presses");
-        assert_eq!(of(-0.3, 0.0).state, GateState::Shut);
+        assert_eq!(of(-FINGER_HANGS_RAD + 0.05, 0.0).state, GateState::Open, "it presses");
+        assert_eq!(of(-FINGER_HANGS_RAD - 0.05, 0.0).state, GateState::Shut);
         assert_eq!(of(0.0, 0.4).state, GateState::Doubtful);
     }
 

@@ -50,6 +50,7 @@ mod tests {
             right: image,
             time_difference_s: None,
             name: None,
+            beside: Default::default(),
         }
     }
 

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use plumbline_model::files::{self, Size};
-use plumbline_model::{ClassNames, JobContext};
+use plumbline_model::{ClassNames, JobContext, counted};
 use plumbline_vision::yolo_set::{LabelProblem, RowProblem, Split, YoloSet, label_file_of, scene_of};
 
 use super::view::LabelBox;
@@ -99,8 +99,8 @@ pub fn open(path: &Path, context: &dyn JobContext) -> Result<OpenedSet, JobError
         }
     }
     if survey.repeated_rows > 0 {
-        problems
-            .push(format!("{} rows stand twice in their label file; they count once.", survey.repeated_rows));
+        let rows = counted(survey.repeated_rows, "row");
+        problems.push(format!("Standing twice in the label file, and counting once: {rows}."));
     }
     if survey.polygons > 0 {
         problems.push(format!(

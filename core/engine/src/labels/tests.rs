@@ -70,6 +70,7 @@ impl Desk {
             right: image(200 - seq as u8),
             time_difference_s: None,
             name: None,
+            beside: Default::default(),
         };
         self.state.frame(0, frame, Instant::now());
     }

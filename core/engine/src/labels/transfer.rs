@@ -7,7 +7,7 @@ use std::time::Duration;
 use image::RgbImage;
 use jiff::Timestamp;
 use plumbline_model::files::{self, FileError, Replacement, Size};
-use plumbline_model::{ClassNames, Eye, JobContext, StereoFrame};
+use plumbline_model::{ClassNames, Eye, JobContext, StereoFrame, counted};
 use plumbline_vision::yolo_set::{
     ClassMapping, LabeledImage, MappingProposal, Split, SplitOptions, WriteOptions, YoloSet, label_file_of,
     label_text, scene_of,
@@ -84,12 +84,12 @@ pub fn export(
     let counts = set.split(options).map_err(failed)?;
     let report = set.write(folder, &WriteOptions::default(), context).map_err(failed)?;
     Ok(format!(
-        "{} images to train on and {} to validate are in {} ({} scenes, {} boxes).",
-        counts.train,
-        counts.val,
+        "In {}: {} to train on and {} to validate ({}, {}).",
         folder.display(),
-        counts.scenes,
-        report.boxes
+        counted(counts.train, "image"),
+        counts.val,
+        counted(counts.scenes, "scene"),
+        counted(report.boxes, "box")
     ))
 }
 

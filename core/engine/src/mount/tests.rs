@@ -103,6 +103,7 @@ impl Bench {
             right: image,
             time_difference_s: None,
             name: None,
+            beside: Default::default(),
         };
         let corners = Some(vec![Some(Pixel::new(4.0, 4.0)); 40]);
         let gray = Arc::new(GrayImage::new(8, 8));

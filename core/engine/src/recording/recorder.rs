@@ -9,7 +9,10 @@ use crossbeam_channel::{Receiver, Sender, TrySendError};
 use image::RgbImage;
 use jiff::Timestamp;
 use plumbline_hardware::{QUALITY, encode_jpeg};
-use plumbline_recording::{Counts, JointReading, Jpeg, Note, RecordingError, RecordingWriter, Topic};
+use plumbline_model::EyesThen;
+use plumbline_recording::{
+    Counts, EyePlaces, JointReading, Jpeg, Note, Outline, RecordingError, RecordingWriter, Topic,
+};
 use serde_json::Value;
 
 /// What may wait for the disk: three seconds of pairs.
@@ -25,8 +28,14 @@ pub enum Item {
         number: u64,
         /// Left, right.
         images: [Arc<RgbImage>; 2],
+        /// The images as the cameras have compressed them, where they did.
+        jpegs: Option<[Arc<[u8]>; 2]>,
         /// The right image after the left one, s.
         right_later_s: Option<f64>,
+        /// How the eyes were then.
+        eyes: EyesThen,
+        /// Where they were, where that is known.
+        places: Option<Box<EyePlaces>>,
     },
     /// Angles of joints.
     Joints(Timestamp, Vec<JointReading>),
@@ -34,6 +43,8 @@ pub enum Item {
     Note(Timestamp, Note),
     /// What only this program knows.
     Told(Topic, Timestamp, Value),
+    /// Things in the images of the pair of this time: left, right.
+    Outlines(Timestamp, [Vec<Outline>; 2]),
 }
 
 /// A recording under way; all copies are of the same one, which ends when the last of them is dropped.
@@ -147,19 +158,20 @@ fn write(
 ) -> Result<Written, RecordingError> {
     for item in items {
         match item {
-            Item::Pair { at, number, images, right_later_s } => {
-                let [left, right] = images.map(|image| encode_jpeg(&image, QUALITY));
-                match (left, right) {
-                    (Ok(left), Ok(right)) => {
-                        writer.pair(at, number, [Jpeg(left), Jpeg(right)], right_later_s)?;
+            Item::Pair { at, number, images, jpegs, right_later_s, eyes, places } => {
+                match compressed(images, jpegs) {
+                    Some(jpegs) => {
+                        writer.pair(at, number, jpegs, right_later_s)?;
+                        writer.eyes(at, number, &eyes, places.as_deref())?;
                     }
                     // Only an image beyond what a JPEG can be; the next ones may be others.
-                    _ => _ = told.dropped.fetch_add(1, Ordering::Relaxed),
+                    None => _ = told.dropped.fetch_add(1, Ordering::Relaxed),
                 }
             }
             Item::Joints(at, readings) => writer.joints(at, &readings)?,
             Item::Note(at, note) => writer.note(at, &note)?,
             Item::Told(topic, at, value) => writer.told(topic, at, &value)?,
+            Item::Outlines(at, seen) => writer.outlines(at, &seen)?,
         }
         let counts = writer.counts();
         told.pairs.store(counts.pairs, Ordering::Relaxed);
@@ -169,6 +181,15 @@ fn write(
     let dropped = told.dropped.load(Ordering::Relaxed);
     writer.set_dropped(dropped);
     Ok(Written { counts: writer.finish()?, dropped })
+}
+
+/// As the cameras sent them, else compressed now; `None`: beyond what a JPEG can be.
+fn compressed(images: [Arc<RgbImage>; 2], jpegs: Option<[Arc<[u8]>; 2]>) -> Option<[Jpeg; 2]> {
+    if let Some(jpegs) = jpegs {
+        return Some(jpegs.map(|jpeg| Jpeg(jpeg.to_vec())));
+    }
+    let [left, right] = images.map(|image| encode_jpeg(&image, QUALITY).ok());
+    Some([Jpeg(left?), Jpeg(right?)])
 }
 
 #[cfg(test)]
@@ -210,7 +231,10 @@ mod tests {
         for number in 0..PAIRS {
             let at = start + SignedDuration::from_millis(i64::from(number) * 1000 / 30);
             let images = [0, 1].map(|eye| pictures[(number as usize + 3 * eye) % 8].clone());
-            items.send(Item::Pair { at, number: number.into(), images, right_later_s: None }).expect("room");
+            let eyes = EyesThen { on_s: Some(1.0), head_rad: Some([0.0, -0.6]) };
+            let (jpegs, right_later_s, places) = (None, None, None);
+            let item = Item::Pair { at, number: number.into(), images, jpegs, right_later_s, eyes, places };
+            items.send(item).expect("room");
         }
         drop(items);
         let before = on_processor_s().expect("this system says");

@@ -8,8 +8,8 @@ use image::{Rgb, RgbImage};
 use plumbline_hardware::SourceSpec;
 use plumbline_model::robot::default_rig;
 use plumbline_model::session::Session;
-use plumbline_model::{Stamp, StereoFrame, Unattended};
-use plumbline_recording::{FILE, Recording, Topic};
+use plumbline_model::{Beside, EyesThen, Stamp, StereoFrame, Unattended};
+use plumbline_recording::{EyePlaces, FILE, Jpeg, Recording, Topic};
 use serde_json::json;
 
 use super::command::RecordingCommand;
@@ -46,6 +46,11 @@ impl Desk {
 
     fn apply(&mut self, command: RecordingCommand) {
         self.act(|room, around, context| room.apply(command, around, context));
+    }
+
+    /// A pair comes; of the eyes nothing is known.
+    fn saw(&mut self, frame: &StereoFrame) {
+        self.room.saw(frame, EyesThen::default(), None, Time::now());
     }
 
     fn finish(&mut self, id: crate::ground::jobs::JobId, work: RecordingWork) {
@@ -101,6 +106,7 @@ fn frame(number: u64) -> StereoFrame {
         right: image(100),
         time_difference_s: Some(0.001),
         name: None,
+        beside: Default::default(),
     }
 }
 
@@ -108,13 +114,13 @@ fn frame(number: u64) -> StereoFrame {
 fn what_came_while_it_was_on_is_in_the_file_and_nothing_else() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut desk = Desk::new(folder.path(), true);
-    desk.room.saw(&frame(0), Time::now());
+    desk.saw(&frame(0));
     desk.notices.add(NoticeLevel::Warning, "before");
     assert_eq!(desk.view().state, RecordingState::Off);
     desk.apply(RecordingCommand::Start);
     let RecordingState::On { session, .. } = desk.view().state.clone() else { panic!("{:?}", desk.view()) };
     for number in 1..=6 {
-        desk.room.saw(&frame(number), Time::now());
+        desk.saw(&frame(number));
     }
     desk.room.asked(&json!({ "workflow": "grasp" }), Time::now());
     desk.notices.add(NoticeLevel::Error, "after");
@@ -129,7 +135,7 @@ fn what_came_while_it_was_on_is_in_the_file_and_nothing_else() {
     assert_eq!(view.state, RecordingState::Off);
     let last = view.last.clone().expect("finished");
     assert_eq!((&last.session, last.so_far.pairs, last.so_far.dropped), (&session, 6, 0));
-    desk.room.saw(&frame(7), Time::now());
+    desk.saw(&frame(7));
 
     assert!(session.starts_with(folder.path().join("twin")), "of the twin, beside its other sessions");
     Session::read(&session).expect("a session");
@@ -146,6 +152,30 @@ fn what_came_while_it_was_on_is_in_the_file_and_nothing_else() {
     assert!(recording.joints().expect("readable").is_empty(), "no joint was read");
     let attached: Vec<&str> = recording.attached().iter().map(|file| file.name.as_str()).collect();
     assert_eq!(attached, ["rig.toml", "robot.urdf", "rig-cameras.yaml"]);
+}
+
+#[test]
+fn how_the_eyes_were_and_what_the_cameras_sent_is_in_it_as_it_was() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut desk = Desk::new(folder.path(), true);
+    desk.apply(RecordingCommand::Start);
+    let rig = default_rig();
+    let robot_from_left = rig.robot_from_left(&rig.home());
+    let places = EyePlaces { robot_from_left, right_from_left: rig.eyes.cameras.right_from_left };
+    let then = EyesThen { on_s: Some(321.0), head_rad: Some([0.2, -0.6]) };
+    let sent = [vec![0xff, 0xd8, 1], vec![0xff, 0xd8, 2]];
+    let jpegs = Some(sent.clone().map(Arc::from));
+    let compressed = StereoFrame { beside: Beside { jpegs, then: None }, ..frame(1) };
+    desk.room.saw(&compressed, then, Some(places), Time::now());
+    desk.saw(&frame(2));
+    desk.apply(RecordingCommand::Stop);
+    let session = desk.view().last.as_ref().expect("finished").session.clone();
+    let mut recording = Recording::open(&session.join(FILE)).expect("a recording");
+    let [first, second] = [0, 1].map(|index| recording.pair(index).expect("readable"));
+    assert_eq!((first.eyes, first.images), (then, sent.map(Jpeg)), "not compressed again");
+    assert!(second.eyes.is_unknown());
+    let told = recording.robot_from_left().expect("readable");
+    assert_eq!((told.len(), told[0].at), (1, first.at));
 }
 
 #[test]
@@ -180,7 +210,7 @@ fn a_recorder_that_does_not_keep_up_counts_what_it_drops() {
     let pairs = 400;
     for number in 0..pairs {
         let frame = StereoFrame { left: large.clone(), right: large.clone(), ..frame(number) };
-        desk.room.saw(&frame, Time::now());
+        desk.saw(&frame);
     }
     std::thread::sleep(Duration::from_millis(50));
     desk.apply(RecordingCommand::Stop);
@@ -201,7 +231,7 @@ fn pairs_that_were_replaced_before_they_came_are_missing_and_counted() {
     desk.apply(RecordingCommand::Start);
     for number in 0..10 {
         desk.room.were_replaced(7 + 2 * number);
-        desk.room.saw(&frame(number), Time::now());
+        desk.saw(&frame(number));
     }
     let RecordingState::On { so_far, .. } = desk.view().state else { panic!("{:?}", desk.view()) };
     assert_eq!(so_far.dropped, 18);
@@ -218,7 +248,7 @@ fn another_source_ends_the_recording_with_a_word() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut desk = Desk::new(folder.path(), true);
     desk.apply(RecordingCommand::Start);
-    desk.room.saw(&frame(1), Time::now());
+    desk.saw(&frame(1));
     desk.follow_source();
     assert!(desk.view().is_on(), "it is the same one");
     desk.around.opened += 1;
@@ -226,7 +256,7 @@ fn another_source_ends_the_recording_with_a_word() {
     desk.follow_source();
     assert!(desk.said().contains("the recording has ended"), "{}", desk.said());
     let last = desk.view().last.clone().expect("finished");
-    desk.room.saw(&frame(2), Time::now());
+    desk.saw(&frame(2));
     let recording = Recording::open(&last.session.join(FILE)).expect("a recording");
     assert!(recording.is_whole() && recording.pair_count() == 1);
     // The next one is of the source that is open now.
@@ -240,14 +270,14 @@ fn the_same_source_opened_again_goes_on_and_a_closed_one_ends() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut desk = Desk::new(folder.path(), true);
     desk.apply(RecordingCommand::Start);
-    desk.room.saw(&frame(1), Time::now());
+    desk.saw(&frame(1));
     // Its thread ended and was started again: none is open for a moment, under the same number.
     let spec = desk.around.spec.take();
     desk.follow_source();
     assert!(desk.view().is_on(), "{}", desk.said());
     (desk.around.spec, desk.around.opened) = (spec, 2);
     desk.follow_source();
-    desk.room.saw(&frame(2), Time::now());
+    desk.saw(&frame(2));
     assert!(desk.view().is_on() && desk.said().is_empty(), "{}", desk.said());
     (desk.around.spec, desk.around.opened) = (None, 3);
     desk.follow_source();
@@ -294,7 +324,7 @@ fn record_until_full(folder: &Path) {
         assert!(began.elapsed() < Duration::from_secs(60), "it never noticed");
         number += 1;
         let frame = StereoFrame { left: noise.clone(), right: noise.clone(), ..frame(number) };
-        desk.room.saw(&frame, Time::now());
+        desk.saw(&frame);
         std::thread::sleep(Duration::from_millis(2));
         desk.look_after();
     }

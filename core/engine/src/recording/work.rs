@@ -6,7 +6,7 @@ use jiff::Timestamp;
 use plumbline_model::files::{self, Size};
 use plumbline_model::formats::native;
 use plumbline_model::robot::Rig;
-use plumbline_model::session::{Manifest, RigReference, names};
+use plumbline_model::session::{Manifest, names};
 use plumbline_model::{JobContext, StereoCalibration, StereoCameras, counted};
 use plumbline_recording::{About, Attached, FILE, RecordingWriter};
 
@@ -108,15 +108,7 @@ fn attached(session: &Path, rig: &str, cameras: Option<&StereoCameras>) -> Resul
 fn manifest(rig: &str, started: Timestamp) -> Manifest {
     let mut extra = toml::Table::new();
     extra.insert("software".to_owned(), software().into());
-    Manifest {
-        rig: RigReference::Named(rig.to_owned()),
-        started,
-        operator: String::new(),
-        notes: String::new(),
-        touchscreen: None,
-        chain: None,
-        extra,
-    }
+    Manifest { extra, ..Manifest::of_rig(rig, started) }
 }
 
 impl RecordingResult {

@@ -1,23 +1,27 @@
 //! Whether it records, and what is handed to the recorder.
 
+use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use jiff::Timestamp;
 use plumbline_hardware::SourceSpec;
-use plumbline_model::{PixelBox, StereoCameras, StereoFrame};
-use plumbline_recording::{JointReading, Level, Note, Topic};
+use plumbline_model::{Eye, EyesThen, PixelBox, StereoCameras, StereoFrame};
+use plumbline_recording::{EyePlaces, JointReading, Level, Note, Outline, Topic};
 use serde_json::{Value, json};
 
 use super::command::RecordingCommand;
 use super::recorder::{Item, Recorder, Written};
 use super::view::{Recorded, RecordedSoFar, RecordingState, RecordingView};
 use super::work::{Context, RecordingResult, RecordingWork};
-use crate::detect::view::{DetectionsView, SeenBox};
+use crate::detect::view::{DetectionsView, ObjectView, SeenBox};
 use crate::ground::jobs::JobId;
 use crate::ground::notice::{Notice, NoticeLevel};
 use crate::ground::{Moment, Nothing, Time, Workflow, World};
 use crate::robot::view::{JointView, RobotView};
+
+/// So many pairs are remembered for what is found in them later: two seconds of them.
+const REMEMBERED: usize = 60;
 
 /// What the workflow can see of the rest.
 pub struct RecordingAround {
@@ -54,6 +58,8 @@ pub struct RecordingWorkflow {
     replaced: u64,
     /// Number of the newest message that is in it.
     noted: u64,
+    /// Numbers of the newest pairs that are in it, and at which time each stands.
+    times: VecDeque<(u64, Timestamp)>,
     last: Option<Arc<Recorded>>,
 }
 
@@ -98,17 +104,23 @@ impl RecordingWorkflow {
         self.recorder().is_some()
     }
 
-    /// A pair has come.
-    pub fn saw(&self, frame: &StereoFrame, time: Time) {
+    /// A pair has come; how and where the eyes are, as far as that is known.
+    pub fn saw(&mut self, frame: &StereoFrame, eyes: EyesThen, places: Option<EyePlaces>, time: Time) {
         let Some(recorder) = self.recorder() else { return };
-        let ago = time.instant.saturating_duration_since(frame.stamp.captured_at);
-        let at = time.day.checked_sub(ago).unwrap_or(time.day);
+        let at = time.day_at(frame.stamp.captured_at);
         recorder.put(Item::Pair {
             at,
             number: frame.stamp.seq,
             images: [frame.left.clone(), frame.right.clone()],
+            jpegs: frame.beside.jpegs.clone(),
             right_later_s: frame.time_difference_s,
+            eyes,
+            places: places.map(Box::new),
         });
+        self.times.push_back((frame.stamp.seq, at));
+        if self.times.len() > REMEMBERED {
+            self.times.pop_front();
+        }
     }
 
     /// So many pairs, since the program was started, were replaced by a newer one before they came here.
@@ -176,9 +188,11 @@ impl RecordingWorkflow {
     /// Things were found in a pair.
     pub fn found(&self, found: &DetectionsView, time: Time) {
         let Some(recorder) = self.recorder() else { return };
-        let ago = time.instant.saturating_duration_since(found.stamp.captured_at);
-        let at = time.day.checked_sub(ago).unwrap_or(time.day);
+        // What is drawn over an image stands at exactly its time.
+        let known = self.times.iter().find(|(number, _)| *number == found.stamp.seq);
+        let at = known.map_or_else(|| time.day_at(found.stamp.captured_at), |(_, at)| *at);
         recorder.put(Item::Told(Topic::Detections, at, detections(found)));
+        recorder.put(Item::Outlines(at, outlines(found)));
     }
 
     /// Messages that are not in it yet.
@@ -258,6 +272,19 @@ fn detections(found: &DetectionsView) -> Value {
         })
         .collect();
     json!({ "pair": found.stamp.seq, "objects": objects })
+}
+
+/// Boxes in the left and in the right image, each with what it is and how sure that is.
+fn outlines(found: &DetectionsView) -> [Vec<Outline>; 2] {
+    Eye::BOTH.map(|eye| {
+        let of_object = |object: &ObjectView| {
+            let seen = object.seen(eye)?;
+            let PixelBox { x0_px, y0_px, x1_px, y1_px } = seen.area;
+            let text = format!("{} {:.2}", object.name, seen.confidence);
+            Some(Outline { box_px: [x0_px, y0_px, x1_px, y1_px].map(f64::from), text })
+        };
+        found.objects.iter().filter_map(of_object).collect()
+    })
 }
 
 impl Workflow for RecordingWorkflow {

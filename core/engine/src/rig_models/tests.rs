@@ -6,7 +6,7 @@ use plumbline_fit::ArmTouches;
 use plumbline_gap::finding::{ClassMember, Comparison, FORMAT, FoundParameter, Unexplained, Verdict};
 use plumbline_model::Unattended;
 use plumbline_model::robot::ik::{Options, Solver, Target};
-use plumbline_model::session::{Manifest, RigReference, TouchTable};
+use plumbline_model::session::{Chain, Manifest, TouchTable};
 
 use super::made_up::model_with;
 use super::*;
@@ -17,25 +17,12 @@ fn nico() -> Rig {
 
 fn session(rig: &Rig) -> Session {
     let joints = rig.chain("right_index_tip").expect("a tip").names().to_vec();
-    Session {
-        manifest: Manifest {
-            rig: RigReference::Named("nico".to_owned()),
-            started: Timestamp::UNIX_EPOCH,
-            operator: String::new(),
-            notes: String::new(),
-            touchscreen: Some(rig.touchscreen.clone()),
-            chain: Some(plumbline_model::session::Chain {
-                tip: "right_index_tip".to_owned(),
-                joints: joints.clone(),
-            }),
-            extra: toml::Table::new(),
-        },
-        touches: Some(TouchTable::from_rows(joints, &[])),
-        localizations: None,
-        poses: None,
-        stereo: Default::default(),
-        log: None,
-    }
+    let manifest = Manifest {
+        touchscreen: Some(rig.touchscreen.clone()),
+        chain: Some(Chain { tip: "right_index_tip".to_owned(), joints: joints.clone() }),
+        ..Manifest::of_rig("nico", Timestamp::UNIX_EPOCH)
+    };
+    Session { touches: Some(TouchTable::from_rows(joints, &[])), ..Session::new(manifest) }
 }
 
 fn named(id: &str, site: &str, value: f64) -> NamedEffect {

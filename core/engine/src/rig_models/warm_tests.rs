@@ -8,7 +8,7 @@ use plumbline_drift::{Look, Sample, errors, log_of};
 use plumbline_effects::{Measurements, SeenUnder};
 use plumbline_gap::{Options, find};
 use plumbline_model::robot::{CalibratedAt, default_rig};
-use plumbline_model::session::{Manifest, RigReference};
+use plumbline_model::session::Manifest;
 use plumbline_model::{LeftCamera, Point, Robot, Unattended};
 
 use super::*;
@@ -79,22 +79,8 @@ fn watched(rig: &Arc<Rig>) -> Vec<Sample> {
 /// As the window does it: a session of what was watched, a search in it, and all that was found.
 fn corrected(rig: &Arc<Rig>) -> RobotModel {
     let table = log_of(rig, &rig.home(), &watched(rig)).expect("long enough");
-    let session = Session {
-        manifest: Manifest {
-            rig: RigReference::Named(rig.name.clone()),
-            started: Timestamp::UNIX_EPOCH,
-            operator: String::new(),
-            notes: String::new(),
-            touchscreen: None,
-            chain: None,
-            extra: toml::Table::new(),
-        },
-        touches: None,
-        localizations: Some(table),
-        poses: None,
-        stereo: Default::default(),
-        log: None,
-    };
+    let manifest = Manifest::of_rig(rig.name.as_str(), Timestamp::UNIX_EPOCH);
+    let session = Session { localizations: Some(table), ..Session::new(manifest) };
     let sessions = [("watched".to_owned(), session.clone())];
     let rows = Measurements::of_sessions(&sessions, rig).expect("usable");
     let finding = find(&rows, &Options::default(), &Unattended).expect("can be looked at");

@@ -45,6 +45,7 @@ impl Worker {
             rig: Some(self.rig.clone()),
             connection: self.connection.clone(),
             motion: state.map_or(MotionState::Unknown, |state| self.motion(state)),
+            rests_on_the_way: state.is_some_and(|state| self.leading.rests(&state.motion)),
             stopped: self.switches.stop.is_pressed(),
             joints: self.joints(state, measured.as_ref()),
             commanded: state.and_then(|state| state.commanded.clone()),
@@ -181,6 +182,7 @@ impl RobotView {
     fn is_same_state(&self, other: &Self) -> bool {
         self.connection == other.connection
             && self.motion.is_same_kind(&other.motion)
+            && self.rests_on_the_way == other.rests_on_the_way
             && self.stopped == other.stopped
             && self.preview == other.preview
             && self.refusal == other.refusal

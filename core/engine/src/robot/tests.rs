@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use plumbline_effects::RobotModel;
 use plumbline_effects::rig_model::Conditions;
 use plumbline_hardware::joints::{
-    BusStatistics, Grip, HoldReason, JointReading, JointState, Motion, Move, MoveId, Refusal, Setpoint,
+    Grip, HoldReason, JointReading, JointState, Move, MoveId, MoveOutcome, Refusal, Setpoint, Unheard,
 };
 use plumbline_model::Stamp;
 use plumbline_model::robot::{JointIndex, Posture, Rig};
@@ -37,6 +37,10 @@ struct Record {
     unknown: Vec<JointIndex>,
     late: Vec<JointIndex>,
     gone: Option<String>,
+    /// A joint that holds and was read just now.
+    heard: Option<JointIndex>,
+    /// How the last move ended.
+    outcome: Option<MoveOutcome>,
 }
 
 struct FakeArm {
@@ -51,26 +55,25 @@ impl Arm for FakeArm {
 
     fn state(&self) -> Option<Arc<JointState>> {
         // Once: what is locked in the literal stays locked to its end.
-        let (unknown, late, gone) = {
+        let (unknown, late, gone, heard, outcome) = {
             let record = self.record.lock().expect("no test panics in here");
-            (record.unknown.clone().into(), record.late.clone().into(), record.gone.clone())
+            let (unknown, late) = (record.unknown.clone().into(), record.late.clone().into());
+            (unknown, late, record.gone.clone(), record.heard, record.outcome.clone())
         };
+        let reading = |joint| JointReading {
+            torque_on: Some(true),
+            age: Some(Duration::from_millis(10)),
+            ..JointReading::new(joint, 1)
+        };
+        let joints: Vec<JointReading> = heard.into_iter().map(reading).collect();
         Some(Arc::new(JointState {
-            stamp: Stamp { seq: 1, captured_at: Instant::now() },
-            joints: Arc::<[JointReading]>::from([]),
-            motion: Motion::Holding(HoldReason::Connected),
-            stopped: false,
             measured: Some(self.posture.clone()),
             unknown,
             late,
-            slow_answers: 0,
             commanded: Some(self.posture.clone()),
-            bus: BusStatistics::default(),
-            outcomes: Arc::from([]),
-            refusal: None,
-            warnings: Arc::from([]),
-            scan: Arc::default(),
             gone,
+            outcomes: outcome.into_iter().map(|outcome| (MoveId(1), outcome)).collect(),
+            ..JointState::new(Stamp { seq: 1, captured_at: Instant::now() }, joints)
         }))
     }
 
@@ -270,6 +273,90 @@ fn who_leads_is_told_what_the_joints_do_also_while_an_order_is_carried_out() {
     let (states, lost) = leader.take_course();
     assert_eq!((states.len(), lost), (3, 0));
     assert!(leader.answer(Duration::ZERO).expect("not given up").is_none(), "and no answer is in its place");
+}
+
+#[test]
+fn a_way_on_which_a_joint_was_late_goes_on_by_itself_and_one_whose_servo_is_silent_ends() {
+    let mut bench = Bench::connected();
+    let elbow = bench.joint("r_elbow_y");
+    let (leader, led) = Leader::pair("grasping", true, &Reins::default());
+    bench.worker.control(RobotControl::Lead(led));
+    leader.order(LeadOrder::Follow { way: vec![vec![(elbow, 1.6)]], speed_rad_s: 0.5 }).expect("it is led");
+    let began = Instant::now();
+    let record = bench.record.clone();
+    let ended = |outcome: Option<MoveOutcome>| {
+        record.lock().expect("no test panics in here").outcome = outcome;
+    };
+    let moves = |bench: &Bench| bench.asked().iter().filter(|asked| matches!(asked, Asked::Move(_))).count();
+    bench.worker.tick(began);
+    assert_eq!(moves(&bench), 1);
+
+    let late = Refusal::Unknown { joint: elbow, name: "Right elbow".to_owned(), why: Unheard::TooBusy };
+    ended(Some(MoveOutcome::Held(HoldReason::Refused(late))));
+    bench.worker.tick(began + Duration::from_secs(1));
+    let said: Vec<String> = bench.worker.take_notes().into_iter().map(|(_, text)| text).collect();
+    assert!(said.iter().any(|text| text.contains("goes on by itself") && text.contains("busy")), "{said:?}");
+    ended(None);
+    bench.worker.tick(began + Duration::from_secs(5));
+    assert_eq!(moves(&bench), 1, "it is not heard yet");
+    record.lock().expect("no test panics in here").heard = Some(elbow);
+    bench.worker.tick(began + Duration::from_secs(6));
+    assert_eq!(moves(&bench), 1, "one reading is not enough");
+    bench.worker.tick(began + Duration::from_secs(8));
+    assert_eq!(moves(&bench), 2);
+    assert!(leader.answer(Duration::ZERO).expect("not given up").is_none(), "it is under way");
+
+    let name = "Right elbow".to_owned();
+    ended(Some(MoveOutcome::Held(HoldReason::NoAnswer { joint: elbow, name, servo: 5, cycles: 25 })));
+    bench.worker.tick(began + Duration::from_secs(9));
+    let why = leader.answer(Duration::ZERO).expect_err("it is given up").to_string();
+    assert!(why.contains("check its cable and power"), "{why}");
+}
+
+#[test]
+fn what_pauses_and_stands_is_not_said_to_move() {
+    let mut bench = Bench::connected();
+    let reins = Reins::default();
+    let (_leader, led) = Leader::pair("grasping", true, &reins);
+    bench.worker.control(RobotControl::Lead(led));
+    let mut rests = || {
+        bench.worker.tick(Instant::now());
+        bench.worker.take_news().map(|news| news.robot.rests_on_the_way)
+    };
+    assert_eq!(rests(), Some(false), "it may move at any time");
+    reins.hold_tight(true);
+    assert_eq!(rests(), Some(true), "it stands until it is let go on, and that is told at once");
+    reins.hold_tight(false);
+    assert_eq!(rests(), Some(false));
+}
+
+#[test]
+fn a_twin_whose_port_was_unplugged_is_found_again_and_is_the_same() {
+    let mut bench = Bench::new();
+    bench.send(RobotCommand::Scan);
+    assert!(bench.refusal().is_some_and(|why| why.contains("Nothing is connected")), "{:?}", bench.refusal());
+    bench.send(RobotCommand::ConnectTwin { scenario: "perfect".to_owned() });
+    assert_eq!(bench.refusal(), None);
+    let fault = |bench: &mut Bench, on: bool| {
+        let name = "port-closed".to_owned();
+        bench.worker.control(RobotControl::Twin(TwinCommand::Fault { name, on }));
+    };
+    fault(&mut bench, true);
+    let began = Instant::now();
+    while !matches!(bench.worker.connection, Connection::Lost { .. }) {
+        assert!(began.elapsed() < Duration::from_secs(30), "{:?}", bench.worker.connection);
+        std::thread::sleep(Duration::from_millis(10));
+        bench.worker.tick(Instant::now());
+    }
+    fault(&mut bench, false);
+    bench.send(RobotCommand::Scan);
+    assert_eq!(bench.refusal(), None);
+    let found = Connection::Connected { to: "twin \"perfect\"".to_owned(), twin: true };
+    assert_eq!(
+        (&bench.worker.connection, bench.worker.twins_started),
+        (&found, 1),
+        "no other one is started"
+    );
 }
 
 #[test]

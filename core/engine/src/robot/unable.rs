@@ -2,6 +2,7 @@
 
 use plumbline_hardware::dynamixel::BusError;
 use plumbline_hardware::joints::{HoldReason, Refusal, ScreenGone};
+use plumbline_model::counted;
 use plumbline_model::robot::collision::CollisionError;
 use plumbline_model::robot::{DescriptionError, ReachError, Refusal as OutOfReach};
 
@@ -24,6 +25,11 @@ pub enum Unable {
     /// There is no bus.
     #[error("Nothing is connected. Connect first.")]
     NothingToScan,
+    /// What was connected is gone.
+    #[error(
+        "The twin has ended, so its servos cannot be looked for. Connect the twin: a new one is started."
+    )]
+    TwinEnded,
     /// Nobody knows where the arm is.
     #[error("The joints have not been read yet.")]
     NotRead,
@@ -92,7 +98,7 @@ pub enum NoDestination {
     #[error("There is no pose called {0} any more.")]
     NoPose(String),
     /// A posture of another robot.
-    #[error("This posture has {posture} joints, the robot {robot}. It is of another robot.")]
+    #[error("This posture has {}, the robot {robot}. It is of another robot.", counted(*.posture, "joint"))]
     OtherRobot {
         /// Joints of the posture.
         posture: usize,
@@ -321,6 +327,14 @@ mod tests {
         let unheard = Refusal::Unknown { joint: JointIndex(0), name: "Head turn".to_owned(), why };
         assert!(Unable::from(unheard.clone()).is_unheard() && Unable::NotRead.is_unheard());
         assert!(holds_unheard(&HoldReason::Refused(unheard)));
+        // Nobody was at the window: that is no silence of a joint, and only a person goes on after it.
+        let nobody = HoldReason::NoHeartbeat(std::time::Duration::from_secs(2));
+        assert!(!holds_unheard(&nobody) && !Unable::from(Refusal::NoHeartbeat).is_unheard());
+        let said = Interrupted::from(nobody).to_string();
+        assert!(
+            said.starts_with("The window did not answer for 2.0 s") && said.contains("then go on"),
+            "{said}"
+        );
         assert!(!Unable::from(Refusal::Stopped).is_unheard() && !Unable::NoPreview.is_unheard());
         assert!(!holds_unheard(&HoldReason::Refused(Refusal::Stopped)) && !holds_unheard(&HoldReason::Stop));
     }

@@ -18,6 +18,8 @@ pub struct RobotView {
     pub connection: Connection,
     /// Whether it moves, stands or is limp.
     pub motion: MotionState,
+    /// In the middle of what it does it stands, for whoever leads it made it pause: it moves when he lets it go on.
+    pub rests_on_the_way: bool,
     /// Whether STOP is latched; nothing moves until it is released.
     pub stopped: bool,
     /// All joints with a servo, in the order of the rig file.
@@ -347,6 +349,7 @@ pub(crate) fn robot_without_its_thread(before: &RobotView, reason: &str) -> Robo
     RobotView {
         connection: Connection::Lost { to, reason: reason.to_owned() },
         motion: MotionState::Unknown,
+        rests_on_the_way: false,
         // Whoever looks after the threads has pressed it.
         stopped: true,
         joints: before.joints.iter().map(JointView::without_readings).collect(),

@@ -71,6 +71,8 @@ pub struct Worker {
     pub(super) switches: Switches,
     pub(super) poses: PoseLibrary,
     pub(super) connection: Connection,
+    /// Whether what was connected last, or could not be, is the twin.
+    pub(super) reached_twin: bool,
     pub(super) arm: Option<Box<dyn Arm>>,
     pub(super) connected_at: Option<Instant>,
     pub(super) desk: TwinDesk,
@@ -120,6 +122,7 @@ impl Worker {
             switches,
             poses,
             connection: Connection::None,
+            reached_twin: false,
             arm: None,
             connected_at: None,
             desk,
@@ -180,7 +183,10 @@ impl Worker {
                 (path.display().to_string(), "asking the bus who is there")
             }
             RobotControl::Robot(RobotCommand::Scan) => {
-                let Connection::Connected { to, .. } = &self.connection else { return None };
+                let (Connection::Connected { to, .. } | Connection::Lost { to, .. }) = &self.connection
+                else {
+                    return None;
+                };
                 (to.clone(), "asking the bus who is there")
             }
             _ => return None,
@@ -340,6 +346,7 @@ impl Worker {
     }
 
     fn connected(&mut self, to: String, twin: bool, arm: Result<Connected, Unable>) -> Result<(), Unable> {
+        self.reached_twin = twin;
         match arm {
             Ok(arm) => {
                 self.arm = Some(arm);
@@ -370,17 +377,17 @@ impl Worker {
 
     fn scan(&mut self) -> Result<(), Unable> {
         // Who is there is asked when the bus is opened: it is closed and opened again.
-        match (self.connection.clone(), self.desk.port()) {
-            (Connection::Connected { to, twin: true }, Some(port)) => {
-                self.disconnect();
-                let arm = connect::open(&port, true, &self.rig, &self.paths, &self.switches);
-                self.connected(to, true, arm.map_err(Unable::from))
-            }
-            (Connection::Connected { to, .. } | Connection::Lost { to, .. }, _) => {
-                self.connect_port(to.into())
-            }
-            _ => Err(Unable::NothingToScan),
+        let (Connection::Connected { to, .. } | Connection::Lost { to, .. }) = self.connection.clone() else {
+            return Err(Unable::NothingToScan);
+        };
+        if !self.reached_twin {
+            return self.connect_port(to.into());
         }
+        // A twin goes on while nobody is connected to it, and everything on its table stays where it is.
+        let port = self.desk.port().ok_or(Unable::TwinEnded)?;
+        self.disconnect();
+        let arm = connect::open(&port, true, &self.rig, &self.paths, &self.switches);
+        self.connected(to, true, arm.map_err(Unable::from))
     }
 
     pub(super) fn arm(&self) -> Result<&dyn Arm, Unable> {

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use plumbline_model::JobContext;
+use plumbline_model::{JobContext, counted};
 
 use plumbline_vision::detect_score::{ModelEvaluation, scores_csv};
 
@@ -111,12 +111,12 @@ impl ScoresResult {
                 let failed =
                     if failed > 0 { format!("; {failed} could not be judged") } else { String::new() };
                 format!(
-                    "Judged {judged} of {} detectors on {} images{failed}.",
+                    "Judged {judged} of {} detectors on {}{failed}.",
                     table.rows.len(),
-                    table.images
+                    counted(table.images, "image")
                 )
             }
-            Self::Opened(cell) => format!("{} images are in the cell.", cell.of),
+            Self::Opened(cell) => format!("In the cell: {}.", counted(cell.of, "image")),
             Self::Written(file) => format!("The scores are in {}.", file.display()),
         }
     }

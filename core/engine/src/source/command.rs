@@ -29,6 +29,8 @@ pub enum SourceCommand {
     Loop(bool),
     /// Pairs per second at which a recording is played.
     PairsPerSecond(f64),
+    /// Goes to the end of a recording that is still being written, and on with what comes; or stays.
+    Follow(bool),
     /// Looks which cameras this machine has, see [`crate::view::SourceView::cameras`].
     ListCameras,
 }
@@ -56,6 +58,8 @@ pub enum Control {
     Loop(bool),
     /// Changes the rate of a recording.
     PairsPerSecond(f64),
+    /// Stays at the end of a recording that is still being written, or does so no more.
+    Follow(bool),
 }
 
 impl Control {
@@ -72,6 +76,7 @@ impl Control {
             SourceCommand::Seek(index) => Self::Seek(index),
             SourceCommand::Loop(looping) => Self::Loop(looping),
             SourceCommand::PairsPerSecond(rate) => Self::PairsPerSecond(rate),
+            SourceCommand::Follow(on) => Self::Follow(on),
             SourceCommand::ListCameras => return None,
         })
     }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+pub use plumbline_hardware::Growth;
 use plumbline_hardware::{CameraDevice, SourceSpec};
 
 /// Where the images come from and how it is doing.
@@ -82,4 +83,6 @@ pub struct ReplayView {
     pub looping: bool,
     /// Pairs per second it aims at; `None` if as fast as possible.
     pub pairs_per_second: Option<f64>,
+    /// Whether more may come at its end.
+    pub growth: Growth,
 }

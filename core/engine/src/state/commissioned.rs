@@ -55,7 +55,7 @@ fn of_gap(gap: &GapWorkflow) -> Option<Found> {
     let (shown, is_open) = gap.found()?;
     let figure = match shown.finding.verdict {
         Verdict::NotInLibrary => CommissionFigure::NotInLibrary,
-        _ => CommissionFigure::Effects(gap.effects_in_use()),
+        _ => CommissionFigure::Effects(gap.effects_told()),
     };
     let done = CommissionDone { at: Some(shown.entry.made), figure };
     Some(Found { sessions: shown.folders.clone(), is_open, done })

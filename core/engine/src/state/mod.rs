@@ -4,6 +4,7 @@ mod actions;
 mod commissioned;
 mod looked;
 mod neighbors;
+mod recorded;
 mod results;
 mod rooms;
 mod stages;
@@ -18,10 +19,11 @@ use std::time::{Duration, Instant};
 use plumbline_effects::robot_model::Unmeasured;
 use plumbline_effects::{RigModel, RobotModel};
 use plumbline_hardware::SourceSpec;
-use plumbline_model::StereoFrame;
 use plumbline_model::robot::{Rig, default_rig};
+use plumbline_model::{EyesThen, StereoFrame};
 
 pub use actions::Action;
+use recorded::is_recording;
 use rooms::{Keeps, Neighbors, Rooms};
 pub use stages::Serves;
 
@@ -83,6 +85,8 @@ pub struct State {
     actions: Vec<Action>,
     /// Which source, counted, the newest pair is of.
     shown_of: u64,
+    /// How the eyes were when the newest pair was taken, where it was recorded.
+    then: Option<EyesThen>,
     revision: u64,
     faults: BTreeMap<WatchedThread, ThreadFault>,
     /// What was known of robot and twin before their thread fell silent.
@@ -117,6 +121,7 @@ impl State {
             clock: Clock::default(),
             actions: Vec::new(),
             shown_of: 0,
+            then: None,
             revision: 0,
             faults: BTreeMap::new(),
             before_silence: None,
@@ -188,13 +193,13 @@ impl State {
     }
 
     /// Hands something to the recording, with the messages that came before it.
-    fn record(&mut self, what: impl FnOnce(&RecordingWorkflow, Time)) {
+    fn record(&mut self, what: impl FnOnce(&mut RecordingWorkflow, Time)) {
         if !self.rooms.recording.is_on() {
             return;
         }
         let time = self.clock.time();
         self.rooms.recording.told(&self.notices.view());
-        what(&self.rooms.recording, time);
+        what(&mut self.rooms.recording, time);
         self.with::<RecordingWorkflow>(World::default(), |recording, _, context| {
             recording.look_after(context);
         });
@@ -248,9 +253,12 @@ impl State {
     }
 
     /// How long the eyes of a world have been on, s: a twin knows it, of other eyes the operator does. Of what was
-    /// recorded nobody does, whatever runs now.
+    /// recorded the recording does, whatever runs now.
     fn eyes_on_s(&self, world: World) -> Option<f64> {
         let source = self.rooms.source.view();
+        if self.shown == world && is_recording(source.spec.as_ref()) {
+            return self.then.and_then(|then| then.on_s);
+        }
         match world {
             World::Twin if self.shown == World::Twin && !self.shows_own_eyes() => None,
             World::Twin => self.twin.running.then_some(self.twin.eyes_on_s),
@@ -314,6 +322,7 @@ impl State {
         if opened < self.rooms.source.view().opened {
             return;
         }
+        self.follow_recorded(opened, &frame);
         self.shown_of = opened;
         self.rooms.eyes.of_mut(self.shown).set_image_size(frame.left.dimensions());
         self.rooms.grasp.of(self.arm_of).saw(&frame);
@@ -321,15 +330,28 @@ impl State {
         self.use_eyes_clock();
         // What a source delivers before it is known of is not of the recording of the one before.
         if opened == self.rooms.source.view().opened {
-            self.record(|recording, time| recording.saw(&frame, time));
+            let is_on = self.rooms.recording.is_on();
+            let (eyes, places) = (self.eyes_then(), is_on.then(|| self.eye_places()).flatten());
+            self.record(|recording, time| recording.saw(&frame, eyes, places, time));
         }
         self.with::<DriftWorkflow>(World::default(), |drift, around, context| {
             drift.saw(&frame, around, context);
         });
-        if self.rooms.eyes.of(self.shown).wants_pairs() {
+        let eyes = self.rooms.eyes.of(self.shown);
+        if eyes.wants_pairs() || eyes.may_look(self.clock.time().instant) {
             self.with::<EyesWorkflow>(self.shown, |eyes, around, context| eyes.saw(&frame, around, context));
         }
         self.rooms.live.frame(frame, now);
+    }
+
+    /// Time passes, whether pairs come or not: nobody waits for an answer without end. Whether something has changed.
+    pub fn time_passes(&mut self) -> bool {
+        let now = self.clock.time().instant;
+        let overdue = World::ALL.map(|world| self.rooms.eyes.of(world).is_overdue(now).then_some(world));
+        for world in overdue.into_iter().flatten() {
+            self.with::<EyesWorkflow>(world, |eyes, around, context| eyes.time_passes(around, context));
+        }
+        overdue.iter().any(Option::is_some)
     }
 
     /// So many pairs of the source, since the program was started, were replaced before they came here.
@@ -355,11 +377,14 @@ impl State {
         }
         self.shown = World::of(view.spec.as_ref());
         // A recording was made by these eyes, whose head stood otherwise.
-        let is_recorded = matches!(view.spec, Some(SourceSpec::Recording { .. }));
+        let is_recorded = is_recording(view.spec.as_ref());
         let own_lenses = is_recorded || is_of_this_robot(view.spec.as_ref());
         self.follow_cameras(&view);
         self.rooms.source.update(view);
         self.source_before_silence = None;
+        if !is_recorded {
+            self.leave_recorded();
+        }
         self.with::<RecordingWorkflow>(World::default(), |recording, around, context| {
             recording.follow_source(around, context);
         });
@@ -482,7 +507,10 @@ impl State {
     /// What the chessboard search is to do with the newest pair, if anything.
     pub fn corners_input(&self) -> Option<CornersInput> {
         let mount_wants = self.rooms.mount.of(self.shown).wants_corners();
-        let wanted = self.rooms.live.wants_corners() || self.shown_eyes().auto_capture() || mount_wants;
+        let wanted = self.rooms.live.wants_corners()
+            || self.shown_eyes().auto_capture()
+            || mount_wants
+            || self.rooms.drift.looks_for_board();
         let frame = self.rooms.live.newest().filter(|_| wanted)?.clone();
         Some(CornersInput { frame, board: *self.shown_eyes().board() })
     }

@@ -15,7 +15,7 @@ use super::rooms::{Neighbors, Rooms, all_rooms};
 use crate::command::{Command, JobCommand, NoticeCommand};
 use crate::commission::CommissionWorkflow;
 use crate::detect::{DetectAround, DetectWorkflow};
-use crate::drift::{DriftAround, DriftWorkflow};
+use crate::drift::{BoardAt, DriftAround, DriftWorkflow};
 use crate::eyes::{EyesAround, EyesWorkflow};
 use crate::gap::{GapAround, GapWorkflow};
 use crate::grasp::{GraspAround, GraspWorkflow};
@@ -28,6 +28,7 @@ use crate::live::LiveWorkflow;
 use crate::models::{ModelsAround, ModelsWorkflow};
 use crate::mount::{MountAround, MountWorkflow};
 use crate::recording::{RecordingAround, RecordingWorkflow};
+use crate::robot::view::MotionState;
 use crate::scores::ScoresWorkflow;
 use crate::source::SourceWorkflow;
 use crate::source::view::SourceStatus;
@@ -164,6 +165,7 @@ impl Neighbors<DetectWorkflow> for State {
             opened: self.shown_of,
             photographs: source.view().photographs,
             setup: live.setup(),
+            arm_moves: matches!(self.robot.motion, MotionState::Moving { .. }),
         }
     }
 }
@@ -175,6 +177,7 @@ impl Neighbors<DriftWorkflow> for State {
         DriftAround {
             is_live: source.status == SourceStatus::Running && !source.photographs,
             is_recorded: source.replay.is_some(),
+            recorded_head_rad: self.then.and_then(|then| then.head_rad),
             opened: source.opened,
             model: self.models.of(self.shown).clone(),
             own_eyes: self.shows_own_eyes() && self.shown == self.arm_of,
@@ -193,6 +196,10 @@ impl Neighbors<DriftWorkflow> for State {
             world: (self.shown == self.arm_of).then_some(self.shown),
             twin: (self.shown == World::Twin && self.twin.running).then(|| self.twin.clone()),
             found: self.rooms.detect.found().cloned(),
+            board: self
+                .shown_eyes()
+                .board_at()
+                .map(|(captured_at, outlines)| BoardAt { captured_at, outlines }),
         }
     }
 
@@ -264,6 +271,9 @@ impl Neighbors<EyesWorkflow> for State {
             source: source.clone(),
             twin_on_s: self.eyes_on_s(World::Twin).filter(|_| shows_twin),
             rig: self.models.of(world).rig().clone(),
+            arm_moves: self.arm_of == world && matches!(self.robot.motion, MotionState::Moving { .. }),
+            is_watched: self.rooms.drift.is_watching(),
+            is_corrected: self.models.of(world).has_growth_of_eyes(),
         }
     }
 

@@ -200,7 +200,7 @@ impl TouchWorkflow {
             return match (plan.reachable(), self.trouble(around)) {
                 (0, _) => "The arm reaches none of these targets. Choose another area.".to_owned(),
                 (_, Some(trouble)) => trouble.to_string(),
-                (count, None) => format!("Touch {count} targets. The arm moves."),
+                (count, None) => format!("Touch {}. The arm moves.", counted(count, "target")),
             };
         }
         if self.proposal.is_some() {

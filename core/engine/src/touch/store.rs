@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use jiff::Timestamp;
 use plumbline_model::files::{self, Size};
-use plumbline_model::session::{Chain, ExtraColumn, Manifest, RigReference, TouchTable, Touchscreen, names};
+use plumbline_model::session::{Chain, ExtraColumn, Manifest, TouchTable, Touchscreen, names};
 use plumbline_model::touch_plan::Purpose;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -103,13 +103,10 @@ pub fn manifest(
         extra.insert("corrected_with".to_owned(), correction.name().into());
     }
     Manifest {
-        rig: RigReference::Named(rig.to_owned()),
-        started,
-        operator: String::new(),
-        notes: String::new(),
         touchscreen: Some(screen.clone()),
         chain: Some(Chain { tip: plan.options.finger.tip().to_owned(), joints: joints.to_vec() }),
         extra,
+        ..Manifest::of_rig(rig, started)
     }
 }
 

@@ -1,5 +1,6 @@
 //! Why something is not done with the twin: sentences.
 
+use plumbline_model::counted;
 use plumbline_twin::TwinError;
 
 use crate::ground::text::sentence;
@@ -20,7 +21,7 @@ pub enum TwinUnable {
     #[error("That place is not on the table.")]
     BesideTable,
     /// The board is held at places that were chosen.
-    #[error("The board has {0} places.")]
+    #[error("The board has {}.", counted(*.0, "place"))]
     NoPlace(usize),
     /// A place that is none.
     #[error("The place of the board must be numbers.")]

@@ -94,6 +94,7 @@ fn frame(scene: &Scene, name: &str, seed: u64) -> StereoFrame {
         right: rgb(right),
         time_difference_s: None,
         name: Some(name.to_owned()),
+        beside: Default::default(),
     }
 }
 

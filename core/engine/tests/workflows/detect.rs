@@ -130,6 +130,7 @@ impl Desk {
             right: image,
             time_difference_s: None,
             name: None,
+            beside: Default::default(),
         };
         self.seq += 1;
         self.state.frame(0, frame, Instant::now());

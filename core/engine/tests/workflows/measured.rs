@@ -26,6 +26,7 @@ fn capturing_by_itself_works_on_what_the_robot_sees() {
             right: Arc::new(images.right),
             time_difference_s: None,
             name: Some(files.name.clone()),
+            beside: Default::default(),
         });
         let view = desk.view();
         println!("{}: {:?}", files.name, view.eyes.hint);

@@ -142,11 +142,10 @@ pub(crate) fn compare(
     }
     let is_related = related(measurements, &residuals);
     if !is_related {
-        warnings.push(
-            "measured and predicted places have hardly anything to do with each other: the rows may be shuffled, or \
-             of another robot or tip. No effect is named from such data"
-                .to_owned(),
-        );
+        // It decides the verdict, so it comes first.
+        let words = "measured and predicted places have hardly anything to do with each other: the rows may be \
+                     shuffled, or of another robot or tip. No effect is named from such data";
+        warnings.insert(0, words.to_owned());
     }
     let comparison = Comparison {
         rows,

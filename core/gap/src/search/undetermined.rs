@@ -26,7 +26,8 @@ pub(super) fn undetermined(
     covariance: &DMatrix<f64>,
     sds: &[f64],
 ) -> Vec<Undetermined> {
-    let names: Vec<(String, String)> = effects.iter().flat_map(|present| names(&present.effect)).collect();
+    let names: Vec<(String, String)> =
+        effects.iter().flat_map(|present| names(measurements, &present.effect)).collect();
     if names.len() != sds.len() || covariance.nrows() < sds.len() {
         return vec![];
     }
@@ -72,8 +73,21 @@ pub(super) fn undetermined(
     found
 }
 
+/// What people call a joint or a link inside of a sentence.
+fn place(measurements: &Measurements, site: &str) -> String {
+    let arms = measurements.apparatuses.iter().filter_map(|apparatus| apparatus.arm.as_ref());
+    let title = arms.flat_map(|arm| &arm.parts).find(|part| part.joint == site).map(|part| &part.title);
+    match title {
+        Some(title) => {
+            let mut letters = title.chars();
+            letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
+        }
+        None => parameter_words::place(site),
+    }
+}
+
 /// Of each value of an effect: `id@site.parameter`, and words.
-fn names(effect: &Effect) -> Vec<(String, String)> {
+fn names(measurements: &Measurements, effect: &Effect) -> Vec<(String, String)> {
     let count = effect.parameters().len();
     let none = DMatrix::zeros(count, count);
     let reported: Vec<String> = effect
@@ -86,8 +100,11 @@ fn names(effect: &Effect) -> Vec<(String, String)> {
         Some(name) if reported.len() == count => name.clone(),
         _ => effect.parameters()[k].name.to_owned(),
     };
-    let site =
-        if effect.site.is_empty() { String::new() } else { format!("{} ", effect.site.replace('_', " ")) };
+    let site = if effect.site.is_empty() {
+        String::new()
+    } else {
+        format!("{} ", place(measurements, &effect.site))
+    };
     (0..count)
         .map(|k| {
             let name = own(k);

@@ -1,7 +1,7 @@
 //! The hand is brought over the object by what the eyes see. M4 as published: the hand is detected, and
 //! the target is shifted by a share of what is missing that halves with every iteration.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Vector2, Vector3};
 use plumbline_model::frame::Tip;
 use plumbline_model::robot::Posture;
 use plumbline_model::{Point, Pose, Robot};
@@ -105,8 +105,7 @@ impl Running<'_> {
             if missing.norm() < PUBLISHED_NEAR_M {
                 break;
             }
-            let share = 0.5f64.powi(k as i32 - 1);
-            shift_m += Vector3::new(missing.x, missing.y, 0.0) * share;
+            shift_m += shift_after_m(&missing, k);
             plan = self.again(&plan, shift_m)?;
         }
         // Back with the palm down before it is lowered.
@@ -174,22 +173,59 @@ fn nearest_hand(
     )))
 }
 
+/// Published: after look `k` (from 1) the target is shifted by a share of what the hand misses over the table, 1/2^(k−1).
+fn shift_after_m(missing_m: &Vector2<f64>, k: usize) -> Vector3<f64> {
+    let share = 0.5f64.powi(k as i32 - 1);
+    Vector3::new(missing_m.x, missing_m.y, 0.0) * share
+}
+
 /// Refuses to send a hand far from where it belongs by the model.
 pub(super) fn near_enough(shift_m: &Vector3<f64>) -> Result<(), End> {
     if shift_m.xy().norm() <= FARTHEST_M {
         return Ok(());
     }
-    let why = "the eyes want the hand far from where it was sent".to_owned();
+    let why = format!(
+        "the eyes want the hand {:.0} mm from where it was sent, more than {:.0} mm: look what else is before them, or \
+         calibrate how they sit in the head",
+        shift_m.xy().norm() * 1e3,
+        FARTHEST_M * 1e3
+    );
     Err(End::Failed(Failure::HandWrong, why))
 }
 
 pub(super) fn above(plan: &GraspPlan) -> Result<Posture, End> {
-    plan.above().cloned().ok_or_else(|| End::Refused("there is no way to above the object".to_owned()))
+    plan.above()
+        .cloned()
+        .ok_or_else(|| End::Refused("there is no way to above the object: plan again".to_owned()))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn m4_shifts_by_all_then_half_then_a_quarter_of_what_is_missing_and_never_in_height() {
+        let missing = Vector2::new(0.04, -0.02);
+        for (k, share) in [(1, 1.0), (2, 0.5), (3, 0.25), (PUBLISHED_LOOKS, 1.0 / 128.0)] {
+            assert_eq!(
+                shift_after_m(&missing, k),
+                Vector3::new(0.04 * share, -0.02 * share, 0.0),
+                "look {k}"
+            );
+        }
+        // However long eyes are wrong by the same, the hand goes less than twice as far.
+        let all: Vector3<f64> = (1..=PUBLISHED_LOOKS).map(|k| shift_after_m(&missing, k)).sum();
+        let share = all.norm() / missing.norm();
+        assert!((1.9..2.0).contains(&share), "{share}");
+    }
+
+    #[test]
+    fn a_hand_that_would_be_sent_far_away_is_not_and_what_to_do_is_said() {
+        let across = |m: f64| Vector3::new(0.6 * m, -0.8 * m, 0.5);
+        assert!(near_enough(&across(FARTHEST_M - 1e-3)).is_ok(), "the height does not count");
+        let Err(End::Failed(Failure::HandWrong, why)) = near_enough(&across(0.12)) else { panic!("far") };
+        assert!(why.contains("120 mm from where it was sent, more than 80 mm: look"), "{why}");
+    }
 
     #[test]
     fn a_forearm_that_is_taken_for_a_hand_far_from_the_arm_is_none_and_the_reason_is_said() {

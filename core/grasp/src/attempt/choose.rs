@@ -42,8 +42,7 @@ impl Running<'_> {
         self.watch.saw(Step::Look, sight, &seen);
         (self.record.seen_at_s, self.record.seen) = (Some(sight.at_s), seen);
         let object = &self.order.object;
-        let thing = Thing::of_class(object)
-            .ok_or_else(|| End::Refused(format!("nothing is known of a thing called {object}")))?;
+        let thing = Thing::of_class(object).ok_or_else(|| End::Refused(unknown_thing(object)))?;
         let knowledge = &grasper.knowledge;
         let stands = |place: &SeenPlace| over_table_m(knowledge, &thing, place).is_none();
         let index = nearest(&self.record.seen, thing.class, self.near_m, stands)?;
@@ -116,6 +115,12 @@ fn over_table_m(knowledge: &Knowledge, thing: &Thing, place: &SeenPlace) -> Opti
     (off_m.abs() > NOT_ON_TABLE_M + 3.0 * sigma_m).then_some(off_m)
 }
 
+/// What can be asked for instead of what nobody knows.
+fn unknown_thing(object: &str) -> String {
+    let known: Vec<String> = Thing::held().map(|thing| thing.class.to_lowercase()).collect();
+    format!("nothing is known of a thing called {object}: choose one of {}", known.join(", "))
+}
+
 fn one_eye_only(lower: &str, eye: &str, why: &str) -> String {
     format!(
         "the {lower} is seen by the {eye} eye only ({why}): look for what is in front of the other one, or put the \
@@ -160,7 +165,9 @@ fn nearest(
             [None, Some(_)] => one_eye_only(&lower, "right", why),
             _ => format!("the {lower} has no place: {why}"),
         }),
-        Some(_) => not_seen(format!("no {lower} is seen near the place that was chosen")),
+        Some(_) => not_seen(format!(
+            "no {lower} is seen near the place that was chosen: click on it again, or choose its class"
+        )),
     })
 }
 
@@ -212,6 +219,15 @@ mod tests {
         assert_eq!(index(&seen, None), Ok(0));
         seen[0].class = "Orange".to_owned();
         assert_eq!(index(&seen, None), Ok(1));
+    }
+
+    #[test]
+    fn what_is_not_where_it_was_pointed_at_or_is_not_known_is_refused_with_what_to_do() {
+        let seen = [tomato(Ok([0.3, -0.1, 0.08]), [Some([0.0; 4]); 2])];
+        let why = why(nearest(&seen, "Tomato", Some([0.5, 0.3]), |_| true).expect_err("it stands elsewhere"));
+        assert!(why.contains("near the place that was chosen: click on it again"), "{why}");
+        let unknown = unknown_thing("anvil");
+        assert!(unknown.contains("called anvil: choose one of") && unknown.contains("tomato"), "{unknown}");
     }
 
     #[test]

@@ -30,7 +30,7 @@ use arms::OneArm;
 
 pub use align::{FoundHand, HandFinder, HandMissing};
 pub use choose::Chosen;
-pub use ready::HANGS_RAD;
+pub use ready::{FINGER_HANGS_RAD, HANGS_RAD};
 pub use rendered::{NoHand, RenderedHand};
 
 /// Peak joint speed through the air, rad/s.
@@ -109,7 +109,7 @@ impl From<End> for Outcome {
 impl From<Halt> for End {
     fn from(halt: Halt) -> Self {
         match halt {
-            Halt::Blind(why) => Self::Failed(Failure::NotSeen, why),
+            Halt::Blind(_) => Self::Failed(Failure::NotSeen, halt.to_string()),
             other => Self::Failed(Failure::Halted, other.to_string()),
         }
     }
@@ -394,7 +394,10 @@ impl Running<'_> {
 
     /// The thumb first: the fingers push against it.
     fn close(&mut self, plan: &GraspPlan) -> Result<Posture, End> {
-        let open = plan.closing().cloned().ok_or_else(|| End::Refused("there is no way down".to_owned()))?;
+        let open = plan
+            .closing()
+            .cloned()
+            .ok_or_else(|| End::Refused("there is no way down: plan again".to_owned()))?;
         let planner = self.grasper.planner(self.order.method);
         let closed = planner.closed(&open);
         let thumb = planner.thumb_closed(&open);

@@ -9,8 +9,8 @@ use crate::body::ServoState;
 /// arm's own weight and what rubs is less than half of it. One that hangs as far behind as the bus lets a move run ahead
 /// (`gate.step_rad`, 0.1 rad) could not be moved on anyway.
 pub const HANGS_RAD: f64 = 0.09;
-/// Fingers press on what they met, and stay behind.
-const FINGER_HANGS_RAD: f64 = 0.25;
+/// Fingers press on what they met, and stay behind, rad.
+pub const FINGER_HANGS_RAD: f64 = 0.25;
 /// Angles are compared with those of so long before, s…
 const LOOK_S: f64 = 0.15;
 /// …in which a joint that stands does not turn farther than this, rad: ten ticks of its encoder, 0.1 rad/s.

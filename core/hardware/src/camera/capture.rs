@@ -1,12 +1,15 @@
 //! One camera, through OpenCV and Video4Linux.
 
+use std::sync::Arc;
+
 use image::RgbImage;
-use opencv::core::Mat;
+use opencv::core::{Mat, Vector};
+use opencv::imgcodecs;
 use opencv::prelude::*;
 use opencv::videoio::{self, VideoCapture, VideoWriter};
 
 use super::settings::CameraSettings;
-use crate::cv;
+use crate::{cv, jpeg};
 
 /// What a camera says that it delivers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,13 +20,22 @@ pub(super) struct Delivered {
     pub rate_hz: f64,
 }
 
+/// A frame.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Captured {
+    /// 8-bit RGB.
+    pub image: RgbImage,
+    /// As the camera has compressed it, where it did.
+    pub jpeg: Option<Arc<[u8]>>,
+}
+
 /// One eye's camera. Tests put another behind it.
 pub(super) trait EyeCamera: Send {
     /// Waits for the next frame and keeps it; the moment this returns is the time of capture.
     /// An error means that the camera is gone.
     fn grab(&mut self) -> Result<(), String>;
     /// Decodes the frame kept by `grab`. An error means that this one frame is damaged.
-    fn retrieve(&mut self) -> Result<RgbImage, String>;
+    fn retrieve(&mut self) -> Result<Captured, String>;
     /// What it delivers.
     fn delivers(&self) -> Delivered;
 }
@@ -33,7 +45,7 @@ pub(super) struct V4lCamera {
     number: u32,
     capture: VideoCapture,
     delivered: Delivered,
-    decoded: Mat,
+    received: Mat,
 }
 
 impl V4lCamera {
@@ -67,11 +79,19 @@ impl V4lCamera {
         }
         ask_for(&mut capture, settings).map_err(|error| cv::message(&error))?;
         let delivered = Delivered { size: (0, 0), rate_hz: 30.0 };
-        let mut camera = Self { number, capture, delivered, decoded: Mat::default() };
-        camera.grab().map_err(|_| {
-            "it opens but sends no image: close other programs that use it; if both cameras share a USB controller, plug one in elsewhere or ask for compressed frames".to_owned()
-        })?;
-        camera.delivered.size = camera.retrieve()?.dimensions();
+        let mut camera = Self { number, capture, delivered, received: Mat::default() };
+        camera.ask_for_jpeg(true);
+        camera.grab_first()?;
+        let first = match camera.retrieve() {
+            Ok(first) => first,
+            // It says that it compresses, and its driver does not hand that out: OpenCV decodes as ever.
+            Err(_) => {
+                camera.ask_for_jpeg(false);
+                camera.grab_first()?;
+                camera.retrieve()?
+            }
+        };
+        camera.delivered.size = first.image.dimensions();
         if let Ok(rate_hz) = camera.capture.get(videoio::CAP_PROP_FPS)
             && (0.1..=1000.0).contains(&rate_hz)
         {
@@ -79,6 +99,38 @@ impl V4lCamera {
         }
         Ok(camera)
     }
+
+    fn grab_first(&mut self) -> Result<(), String> {
+        self.grab().map_err(|_| {
+            "it opens but sends no image: close other programs that use it; if both cameras share a USB controller, plug one in elsewhere or ask for compressed frames".to_owned()
+        })
+    }
+
+    /// Whether frames of a camera that compresses them come as it has sent them, so that a recording keeps just these.
+    /// A driver that knows nothing of it leaves them as they are.
+    fn ask_for_jpeg(&mut self, as_sent: bool) {
+        let code = self.capture.get(videoio::CAP_PROP_FOURCC).unwrap_or_default();
+        let compresses = VideoWriter::fourcc('M', 'J', 'P', 'G').is_ok_and(|mjpg| f64::from(mjpg) == code);
+        let decoded_by_opencv = if as_sent && compresses { 0.0 } else { 1.0 };
+        if let Err(error) = self.capture.set(videoio::CAP_PROP_CONVERT_RGB, decoded_by_opencv) {
+            log::debug!("camera {} decodes as it does: {}", self.number, cv::message(&error));
+        }
+    }
+}
+
+/// A frame as OpenCV hands it out: pixels, or one row of bytes that are a JPEG.
+fn captured(received: &Mat) -> Result<Captured, String> {
+    let is_sent = received.rows() == 1 && received.channels() == 1;
+    if !is_sent {
+        return Ok(Captured { image: cv::rgb_image(received)?, jpeg: None });
+    }
+    let bytes = received.data_bytes().map_err(|error| cv::message(&error))?;
+    if !jpeg::is_complete(bytes) {
+        return Err("the frame is damaged: its end is missing".to_owned());
+    }
+    let sent = Vector::from_slice(bytes);
+    let pixels = imgcodecs::imdecode(&sent, imgcodecs::IMREAD_COLOR).map_err(|error| cv::message(&error))?;
+    Ok(Captured { image: cv::rgb_image(&pixels)?, jpeg: Some(bytes.into()) })
 }
 
 /// The pixel format first, because it decides which sizes and rates there are. What a
@@ -109,9 +161,9 @@ impl EyeCamera for V4lCamera {
         }
     }
 
-    fn retrieve(&mut self) -> Result<RgbImage, String> {
-        match self.capture.retrieve_def(&mut self.decoded) {
-            Ok(true) => cv::rgb_image(&self.decoded),
+    fn retrieve(&mut self) -> Result<Captured, String> {
+        match self.capture.retrieve_def(&mut self.received) {
+            Ok(true) => captured(&self.received),
             Ok(false) => Err("the frame is damaged".to_owned()),
             Err(error) => Err(cv::message(&error)),
         }
@@ -119,5 +171,33 @@ impl EyeCamera for V4lCamera {
 
     fn delivers(&self) -> Delivered {
         self.delivered
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use image::Rgb;
+
+    use super::*;
+
+    #[test]
+    fn what_a_camera_has_compressed_is_kept_as_it_was_sent() {
+        let image = RgbImage::from_fn(64, 48, |u, v| Rgb([(3 * u) as u8, (4 * v) as u8, 90]));
+        let mut sent = jpeg::encode(&image, jpeg::QUALITY).expect("small");
+        // Cameras fill their buffers up.
+        sent.extend([0; 100]);
+        let received =
+            Mat::new_rows_cols_with_bytes::<u8>(1, sent.len() as i32, &sent).expect("bytes").clone_pointee();
+        let found = captured(&received).expect("whole");
+        assert_eq!(found.jpeg.as_deref(), Some(&sent[..]));
+        assert_eq!(found.image.dimensions(), (64, 48));
+        let off = found.image.iter().zip(image.iter()).map(|(a, b)| f64::from(a.abs_diff(*b))).sum::<f64>();
+        assert!(off / (image.len() as f64) < 3.0, "colors are where they were");
+        let cut = Mat::new_rows_cols_with_bytes::<u8>(1, 200, &sent[..200]).expect("bytes").clone_pointee();
+        assert!(captured(&cut).is_err_and(|why| why.contains("its end is missing")));
+        let pixels = Mat::new_rows_cols_with_bytes::<opencv::core::Vec3b>(48, 64, &image)
+            .expect("pixels")
+            .clone_pointee();
+        assert_eq!(captured(&pixels).expect("pixels").jpeg, None);
     }
 }

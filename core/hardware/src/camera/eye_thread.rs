@@ -6,10 +6,9 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use image::RgbImage;
 use plumbline_model::Eye;
 
-use super::capture::EyeCamera;
+use super::capture::{Captured, EyeCamera};
 use crate::error::SourceError;
 
 /// Frames that wait to be collected; older ones go and are counted.
@@ -19,7 +18,7 @@ const DAMAGED_LIMIT: u32 = 30;
 
 /// What the thread hands over.
 struct Inbox {
-    frames: Mutex<VecDeque<(Instant, RgbImage)>>,
+    frames: Mutex<VecDeque<(Instant, Captured)>>,
     last_frame_at: Mutex<Instant>,
     gone: Mutex<Option<String>>,
     dropped: AtomicU64,
@@ -50,7 +49,7 @@ impl EyeThread {
     }
 
     /// Frames since the last call with their host time of capture, oldest first.
-    pub(super) fn take_frames(&self) -> VecDeque<(Instant, RgbImage)> {
+    pub(super) fn take_frames(&self) -> VecDeque<(Instant, Captured)> {
         std::mem::take(&mut *lock(&self.inbox.frames))
     }
 

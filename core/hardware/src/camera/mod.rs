@@ -8,13 +8,12 @@ mod settings;
 use std::sync::Arc;
 use std::time::Instant;
 
-use image::RgbImage;
-use plumbline_model::{Eye, Stamp, StereoFrame, duration};
+use plumbline_model::{Beside, Eye, Stamp, StereoFrame, duration};
 
 use crate::error::SourceError;
 use crate::pair_by_time::{PairByTime, Timed};
 use crate::source::{Counters, Next, Report, SourceDescription, SourceKind, StereoSource};
-use capture::{Delivered, EyeCamera, V4lCamera};
+use capture::{Captured, Delivered, EyeCamera, V4lCamera};
 pub use device::{CameraDevice, CameraProbe, camera_devices, probe_camera};
 pub(crate) use device::{camera_number_at_port, camera_port};
 use eye_thread::EyeThread;
@@ -30,7 +29,7 @@ pub(crate) struct CameraSource {
     delivered: Delivered,
     settings: CameraSettings,
     threads: [EyeThread; 2],
-    pairing: PairByTime<RgbImage>,
+    pairing: PairByTime<Captured>,
     /// Zero of the clock on which frames are paired.
     epoch: Instant,
     counters: Counters,
@@ -108,18 +107,20 @@ impl CameraSource {
         Ok(())
     }
 
-    fn frame(&mut self, left: Timed<RgbImage>, right: Timed<RgbImage>) -> StereoFrame {
+    fn frame(&mut self, left: Timed<Captured>, right: Timed<Captured>) -> StereoFrame {
         let seq = self.counters.delivered;
         self.counters.delivered += 1;
+        let jpegs = left.frame.jpeg.zip(right.frame.jpeg).map(|(left, right)| [left, right]);
         // A pair is as old as the older of its images.
         let since_epoch = duration::seconds(left.time_s.min(right.time_s));
         let captured_at = since_epoch.map_or_else(Instant::now, |time| self.epoch + time);
         StereoFrame {
             stamp: Stamp { seq, captured_at },
             time_difference_s: Some(right.time_s - left.time_s),
-            left: Arc::new(left.frame),
-            right: Arc::new(right.frame),
+            left: Arc::new(left.frame.image),
+            right: Arc::new(right.frame.image),
             name: None,
+            beside: Beside { jpegs, then: None },
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Cameras that are not there: the threads and the pairing with a camera made of numbers.
 
 use super::*;
-use image::Rgb;
+use image::{Rgb, RgbImage};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -15,6 +15,7 @@ struct NumberCamera {
     start: Instant,
     unplugged: Arc<AtomicBool>,
     damaged: bool,
+    sends_jpeg: bool,
 }
 
 impl NumberCamera {
@@ -27,6 +28,7 @@ impl NumberCamera {
             start: Instant::now(),
             unplugged: Arc::clone(unplugged),
             damaged: false,
+            sends_jpeg: false,
         }
     }
 }
@@ -42,11 +44,12 @@ impl EyeCamera for NumberCamera {
         Ok(())
     }
 
-    fn retrieve(&mut self) -> Result<RgbImage, String> {
+    fn retrieve(&mut self) -> Result<Captured, String> {
         if self.damaged {
             return Err("the frame is damaged".to_owned());
         }
-        Ok(RgbImage::from_pixel(self.size.0, self.size.1, Rgb([self.count; 3])))
+        let image = RgbImage::from_pixel(self.size.0, self.size.1, Rgb([self.count; 3]));
+        Ok(Captured { image, jpeg: self.sends_jpeg.then(|| Arc::from([self.count])) })
     }
 
     fn delivers(&self) -> Delivered {
@@ -201,7 +204,7 @@ fn camera_threads_have_names() {
             *self.0.lock().expect("a lock") = std::thread::current().name().map(str::to_owned);
             Err("was only asked its name".to_owned())
         }
-        fn retrieve(&mut self) -> Result<RgbImage, String> {
+        fn retrieve(&mut self) -> Result<Captured, String> {
             Err("nothing was grabbed".to_owned())
         }
         fn delivers(&self) -> Delivered {
@@ -222,4 +225,18 @@ fn camera_threads_have_names() {
     drop(source);
     let names = known();
     assert_eq!(names, [Some("left camera".to_owned()), Some("right camera".to_owned())]);
+}
+
+#[test]
+fn what_both_cameras_have_compressed_comes_with_the_pair() {
+    let plugged = Arc::new(AtomicBool::new(false));
+    for [left_sends, right_sends] in [[true, true], [true, false]] {
+        let [mut left, mut right] = [NumberCamera::new(&plugged), NumberCamera::new(&plugged)];
+        (left.sends_jpeg, right.sends_jpeg) = (left_sends, right_sends);
+        let mut source = start(left, right, settings()).expect("two cameras");
+        let pair = pairs(&mut source, 1).expect("running cameras").remove(0);
+        let numbers = [&pair.left, &pair.right].map(|image| vec![image.get_pixel(0, 0).0[0]]);
+        let sent = pair.beside.jpegs.map(|jpegs| jpegs.map(|jpeg| jpeg.to_vec()));
+        assert_eq!(sent, (left_sends && right_sends).then_some(numbers));
+    }
 }

@@ -7,7 +7,7 @@ use plumbline_model::image_pair::Stamp;
 use plumbline_model::robot::{JointIndex, Posture};
 
 use super::command::{Motion, MoveId, MoveOutcome};
-use super::refusal::Refusal;
+use super::refusal::{HoldReason, Refusal};
 use crate::dynamixel::{BusCounts, BusScan, WireTime};
 
 /// One joint. What is not known is `None`.
@@ -47,7 +47,8 @@ pub struct JointReading {
 }
 
 impl JointReading {
-    pub(super) fn new(joint: JointIndex, servo: u8) -> Self {
+    /// Of a servo that was never read.
+    pub fn new(joint: JointIndex, servo: u8) -> Self {
         Self {
             joint,
             servo,
@@ -124,6 +125,27 @@ pub struct JointState {
 }
 
 impl JointState {
+    /// Of an arm that holds since it was connected; nothing else is known than what its joints say.
+    pub fn new(stamp: Stamp, joints: impl Into<Arc<[JointReading]>>) -> Self {
+        Self {
+            stamp,
+            joints: joints.into(),
+            motion: Motion::Holding(HoldReason::Connected),
+            stopped: false,
+            measured: None,
+            unknown: Arc::from([]),
+            late: Arc::from([]),
+            commanded: None,
+            bus: BusStatistics::default(),
+            outcomes: Arc::from([]),
+            refusal: None,
+            warnings: Arc::from([]),
+            slow_answers: 0,
+            gone: None,
+            scan: Arc::default(),
+        }
+    }
+
     /// The reading of a joint.
     pub fn of(&self, joint: JointIndex) -> Option<&JointReading> {
         self.joints.iter().find(|reading| reading.joint == joint)

@@ -205,7 +205,9 @@ pub enum Refusal {
     #[error("STOP is pressed: release it first")]
     Stopped,
     /// The window does not answer.
-    #[error("the window does not answer: nothing moves until it does")]
+    #[error(
+        "the window does not answer, so nothing moves until it does: if it stays so, close other programs that keep the computer busy"
+    )]
     NoHeartbeat,
     /// The bus is gone.
     #[error("there is no connection to the servos: {0}")]
@@ -234,7 +236,10 @@ pub enum HoldReason {
     #[error("STOP was pressed: release it to move again")]
     Stop,
     /// No sign of life from the window.
-    #[error("the window did not answer for {:.1} s, so the arm holds", .0.as_secs_f64())]
+    #[error(
+        "the window did not answer for {:.1} s, so the arm holds; servos and cables are well: close other programs that keep the computer busy, then go on",
+        .0.as_secs_f64()
+    )]
     NoHeartbeat(Duration),
     /// On its way something was refused.
     #[error("{0}")]

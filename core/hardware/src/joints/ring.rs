@@ -96,7 +96,7 @@ mod tests {
     use plumbline_model::robot::JointIndex;
 
     use super::*;
-    use crate::joints::{BusStatistics, HoldReason, JointReading, Motion};
+    use crate::joints::JointReading;
 
     const STEP: Duration = Duration::from_millis(16);
 
@@ -110,21 +110,9 @@ mod tests {
             (reading.angle_rad, reading.read_at) = (Some(angle_rad), Some(at));
             reading.age = Some(Duration::ZERO);
             ring.push(Arc::new(JointState {
-                stamp: Stamp { seq: u64::from(cycle), captured_at: at },
-                joints: Arc::from([reading]),
-                motion: Motion::Holding(HoldReason::Connected),
-                stopped: false,
                 measured: Some(Posture::new(vec![angle_rad])),
                 commanded: Some(Posture::new(vec![f64::from(cycle)])),
-                bus: BusStatistics::default(),
-                outcomes: Arc::from([]),
-                refusal: None,
-                warnings: Arc::from([]),
-                unknown: Arc::from([]),
-                late: Arc::from([]),
-                slow_answers: 0,
-                gone: None,
-                scan: Arc::default(),
+                ..JointState::new(Stamp { seq: u64::from(cycle), captured_at: at }, [reading])
             }));
         }
         ring

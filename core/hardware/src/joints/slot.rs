@@ -19,6 +19,9 @@ const NEAR: Duration = Duration::from_millis(300);
 const KNOWN_FOR: Duration = Duration::from_secs(1);
 /// An answer that came too late is a sign of life for this long: without it the servo is silent.
 const LATE_COUNTS_FOR: Duration = Duration::from_millis(500);
+/// One that is not known and has missed no more questions than this in a row was hardly asked: a program that runs
+/// asks ten times in the time for which an angle is known.
+const HARDLY_ASKED: u32 = 3;
 /// Less force than this share of the stall torque is none.
 const NO_FORCE: f64 = 0.02;
 
@@ -172,10 +175,10 @@ impl Slot {
         self.late_at.is_some_and(|at| at.elapsed() < LATE_COUNTS_FOR)
     }
 
-    /// Why it is not heard: one that is not even asked in time is no more to blame than one that
-    /// answers late.
+    /// Why it is not heard: one that is hardly asked, because this program stood still, is no more to
+    /// blame than one that answers late.
     pub fn unheard(&self) -> Unheard {
-        let is_reached_too_seldom = self.in_use() && self.missed == 0;
+        let is_reached_too_seldom = self.in_use() && self.missed <= HARDLY_ASKED;
         if self.answers_late() || is_reached_too_seldom { Unheard::TooBusy } else { Unheard::Silent }
     }
 
@@ -291,5 +294,45 @@ impl Slot {
         self.fall_silent();
         self.silent = true;
         self.identity = Identity::Barred(bar);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use plumbline_model::robot::Rig;
+
+    use super::*;
+
+    /// The servo that turns the head, not read for so long and asked in vain so often since.
+    fn neck(not_read_for: Duration, missed: u32) -> Slot {
+        let rig = Rig::built_in("nico").expect("comes with the program");
+        let servo = rig.servo_of(rig.eyes.pan).expect("the head has a servo");
+        let mut slot = Slot::new(ServoUnit::new(servo).expect("a model that is known"));
+        slot.reading.angle_rad = Some(0.1);
+        slot.reading.read_at = Instant::now().checked_sub(not_read_for);
+        (slot.silent, slot.missed) = (false, missed);
+        slot
+    }
+
+    #[test]
+    fn a_servo_is_not_blamed_for_a_program_that_stood_still() {
+        let stalled = KNOWN_FOR + Duration::from_millis(200);
+        for missed in [0, 1, HARDLY_ASKED] {
+            let slot = neck(stalled, missed);
+            assert!(!slot.is_known());
+            assert_eq!(slot.unheard(), Unheard::TooBusy, "missed {missed} times");
+        }
+        // Asked again and again, it does not answer.
+        assert_eq!(neck(stalled, 12).unheard(), Unheard::Silent);
+        let mut silent = neck(stalled, 1);
+        silent.silent = true;
+        assert_eq!(silent.unheard(), Unheard::Silent, "it was left out for its silence");
+        silent.note_late(1);
+        assert_eq!(silent.unheard(), Unheard::TooBusy, "an answer came that nobody waited for any more");
+    }
+
+    #[test]
+    fn a_question_that_was_missed_a_moment_ago_leaves_the_angle_known() {
+        assert!(neck(Duration::from_millis(300), 4).is_known());
     }
 }

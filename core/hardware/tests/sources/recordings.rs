@@ -5,10 +5,11 @@ use std::time::Duration;
 use image::{Rgb, RgbImage};
 use jiff::{SignedDuration, Timestamp};
 use plumbline_hardware::{
-    Next, QUALITY, Replay, Report, SourceError, SourceKind, SourceOptions, SourceSpec, StereoSource,
+    Growth, Next, QUALITY, Replay, Report, SourceError, SourceKind, SourceOptions, SourceSpec, StereoSource,
     encode_jpeg, open,
 };
-use plumbline_recording::{About, FILE, Jpeg, RecordingWriter};
+use plumbline_model::EyesThen;
+use plumbline_recording::{About, FILE, Jpeg, Recording, RecordingWriter};
 
 /// Brighter with each pair, the right eye by 100.
 fn gray(number: u64, eye: u8) -> u8 {
@@ -109,4 +110,53 @@ fn what_was_cut_is_told_and_what_is_none_refused() {
     std::fs::write(&file, b"not a recording at all").expect("written");
     let refused = SourceSpec::from_paths(&[folder.path().to_owned()]).expect_err("it is none").to_string();
     assert!(refused.contains("is not a recording that can be read"), "{refused}");
+}
+
+/// Of a recording of nine pairs what was on disk when eight of them were closed.
+fn eight_of(bytes: &[u8], file: &std::path::Path) {
+    let cut = (1..bytes.len()).rev().step_by(16).find(|length| {
+        std::fs::write(file, &bytes[..*length]).expect("written");
+        Recording::open(file).is_ok_and(|recording| recording.pair_count() == 8)
+    });
+    assert!(cut.is_some(), "a part of it holds eight pairs");
+}
+
+#[test]
+fn what_is_still_written_is_followed_until_it_ends() {
+    let folder = session(false);
+    let file = folder.path().join(FILE);
+    let bytes = std::fs::read(&file).expect("there");
+    eight_of(&bytes, &file);
+    let mut source = source(folder.path(), Replay { looping: true, ..Replay::ONCE });
+    assert_eq!(next(source.as_mut()), Some(0));
+    let finite = source.as_finite().expect("it has an end");
+    assert_eq!(finite.growth(), Growth::Open);
+    finite.follow(true).expect("readable");
+    assert_eq!(finite.growth(), Growth::Followed);
+    assert_eq!(next(source.as_mut()), Some(7), "at its end at once");
+    assert!(matches!(source.next_pair(), Ok(Next::NotYet)), "it does not begin again");
+    std::fs::write(&file, &bytes).expect("written");
+    assert_eq!(next(source.as_mut()), Some(8));
+    assert_eq!(next(source.as_mut()), None, "it was finished");
+    assert_eq!(source.describe().pair_count, Some(9));
+    let told: Vec<String> = source.take_reports().iter().map(ToString::to_string).collect();
+    assert!(told.iter().any(|text| text.contains("was finished")), "{told:?}");
+    let finite = source.as_finite().expect("it has an end");
+    finite.follow(true).expect("readable");
+    assert_eq!(finite.growth(), Growth::Ended, "nothing comes any more");
+}
+
+#[test]
+fn how_the_eyes_were_comes_with_each_pair() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let start: Timestamp = "2026-11-21T10:04:00Z".parse().expect("a time");
+    let file = folder.path().join(FILE);
+    let mut writer = RecordingWriter::create(&file, start, &About::default()).expect("begun");
+    let then = EyesThen { on_s: Some(600.0), head_rad: Some([0.1, -0.6]) };
+    writer.pair(start, 0, [image(0, 0), image(0, 1)], None).expect("written");
+    writer.eyes(start, 0, &then, None).expect("written");
+    writer.finish().expect("finished");
+    let mut source = source(folder.path(), Replay::ONCE);
+    let Ok(Next::Pair(frame)) = source.next_pair() else { panic!("it has one") };
+    assert_eq!(frame.beside.then, Some(then));
 }

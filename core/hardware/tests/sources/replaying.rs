@@ -17,6 +17,7 @@ fn memory(count: u8, replay: Replay) -> MemorySource {
         right: Arc::new(picture(Eye::Right, moment)),
         time_difference_s: None,
         name: None,
+        beside: Default::default(),
     };
     MemorySource::new("synthetic", (0..count).map(pair).collect(), replay).expect("a source")
 }

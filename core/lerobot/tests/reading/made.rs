@@ -3,7 +3,9 @@
 use std::path::Path;
 
 use jiff::{SignedDuration, Timestamp};
-use plumbline_recording::{About, Attached, JointReading, Jpeg, RecordingWriter};
+use plumbline_model::EyesThen;
+use plumbline_model::robot::default_rig;
+use plumbline_recording::{About, Attached, EyePlaces, JointReading, Jpeg, RecordingWriter};
 
 fn at(seconds: f64) -> Timestamp {
     let start: Timestamp = "2026-11-21T10:04:00Z".parse().expect("a time");
@@ -23,8 +25,20 @@ fn joints(angle_rad: f64) -> Vec<JointReading> {
     vec![joint("head_z", angle_rad), joint("head_y", -0.5)]
 }
 
-/// Twenty pairs a second for six seconds; angles from 0.2 s on.
+/// Where the left eye is in the robot, and the right one against it, in all pairs.
+pub(crate) fn places() -> EyePlaces {
+    let rig = default_rig();
+    let robot_from_left = rig.robot_from_left(&rig.home());
+    EyePlaces { robot_from_left, right_from_left: rig.eyes.cameras.right_from_left }
+}
+
+/// Twenty pairs a second for six seconds; angles from 0.2 s on. It says where the eyes were.
 pub(crate) fn recorded(file: &Path) {
+    recorded_with(file, Some(&places()));
+}
+
+/// The same, of a program that may not say where the eyes were.
+pub(crate) fn recorded_with(file: &Path, places: Option<&EyePlaces>) {
     let rig = Attached {
         name: "rig.toml".to_owned(),
         media_type: "application/toml".to_owned(),
@@ -45,6 +59,7 @@ pub(crate) fn recorded(file: &Path) {
         }
         let images = [jpeg((number % 200) as u8), jpeg(250)];
         writer.pair(time, number as u64, images, None).expect("written");
+        writer.eyes(time, number as u64, &EyesThen::default(), places).expect("written");
     }
     writer.finish().expect("finished");
 }

@@ -13,7 +13,7 @@ use plumbline_model::Unattended;
 use plumbline_model::robot::default_rig;
 use serde_json::{Value, json};
 
-use crate::made::recorded;
+use crate::made::{places, recorded, recorded_with};
 
 fn read(file: &Path) -> Vec<Row> {
     let file = File::open(file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
@@ -77,6 +77,16 @@ fn a_recording_becomes_an_episode_that_is_read_through_the_layout() {
         let image = image::load_from_memory(bytes.data()).expect("a picture").to_rgb8();
         assert!(image.get_pixel(9, 9).0[0].abs_diff((number + 4) as u8) < 3, "pair {number}");
     }
+    assert!(exported.has_places);
+    let robot_from_left = places().robot_from_left.isometry.to_homogeneous();
+    let Field::ListInternal(place) = value(&rows[50], "observation.robot_from_left_eye") else { panic!() };
+    let expected: Vec<Field> =
+        robot_from_left.transpose().iter().map(|value| Field::Float(*value as f32)).collect();
+    for (told, expected) in place.elements().iter().zip(&expected) {
+        let (Field::Float(told), Field::Float(expected)) = (told, expected) else { panic!("{told}") };
+        assert!((told - expected).abs() < 1e-6, "{told} {expected}");
+    }
+    assert_eq!(place.elements().len(), 16);
     let tasks = read(&set.join("meta/tasks.parquet"));
     assert_eq!(value(&tasks[0], "task"), &Field::Str("Look at the table.".to_owned()));
     let stats = json_file(&set.join("meta/stats.json"));
@@ -103,4 +113,17 @@ fn what_cannot_be_exported_is_said() {
     assert!(matches!(full, Err(ExportError::NotEmpty(_))), "{full:?}");
     let none = export(&folder.path().join("none.mcap"), &folder.path().join("set"), &options, &Unattended);
     assert!(matches!(none, Err(ExportError::Recording(_))), "{none:?}");
+}
+
+#[test]
+fn a_recording_that_does_not_say_where_the_eyes_were_makes_a_set_without_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (log, set) = (folder.path().join("log.mcap"), folder.path().join("set"));
+    recorded_with(&log, None);
+    let exported = export(&log, &set, &Options { task: "x", cameras: None }, &Unattended).expect("exported");
+    assert!(!exported.has_places);
+    let info = json_file(&set.join("meta/info.json"));
+    assert!(info["features"].get("observation.robot_from_left_eye").is_none());
+    let rows = read(&set.join("data/chunk-000/file-000.parquet"));
+    assert!(rows[0].get_column_iter().all(|(name, _)| name != "observation.robot_from_left_eye"));
 }

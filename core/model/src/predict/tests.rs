@@ -3,7 +3,7 @@
 
 use super::*;
 use crate::measured_data;
-use crate::session::{LocalizationRow, Manifest, PoseRow, RigReference, TouchRow};
+use crate::session::{LocalizationRow, Manifest, PoseRow, TouchRow};
 
 fn nico() -> Rig {
     Rig::built_in("nico").expect("the rig that comes with the program is tested")
@@ -17,22 +17,11 @@ fn arm_joints() -> Vec<String> {
 }
 
 fn empty(rig: &Rig) -> Session {
-    Session {
-        manifest: Manifest {
-            rig: RigReference::Named("nico".to_owned()),
-            started: jiff::Timestamp::UNIX_EPOCH,
-            operator: String::new(),
-            notes: String::new(),
-            touchscreen: Some(rig.touchscreen.clone()),
-            chain: Some(SessionChain { tip: "right_index_tip".to_owned(), joints: arm_joints() }),
-            extra: toml::Table::new(),
-        },
-        touches: None,
-        localizations: None,
-        poses: None,
-        stereo: Default::default(),
-        log: None,
-    }
+    Session::new(Manifest {
+        touchscreen: Some(rig.touchscreen.clone()),
+        chain: Some(SessionChain { tip: "right_index_tip".to_owned(), joints: arm_joints() }),
+        ..Manifest::of_rig("nico", jiff::Timestamp::UNIX_EPOCH)
+    })
 }
 
 fn touched(commanded_rad: [f64; 6], encoder_rad: Option<[f64; 6]>, screen_height_m: f64) -> TouchRow {

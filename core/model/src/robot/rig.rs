@@ -10,6 +10,7 @@ use super::error::{DescriptionError, RigError};
 use super::outlines::Outlines;
 use super::posture::Posture;
 use crate::frame::{Head, LeftCamera, Point, Pose, Robot};
+use crate::parameter_words;
 use crate::session::{CalibratedAt, Touchscreen};
 use crate::stereo::StereoCameras;
 use crate::workspace::Workspace;
@@ -369,6 +370,12 @@ impl Rig {
     /// The servo that moves a joint.
     pub fn servo_of(&self, joint: JointIndex) -> Option<&Servo> {
         self.servos.iter().find(|servo| servo.joint == joint)
+    }
+
+    /// What people call a joint: the title of its servo, or what its name says.
+    pub fn joint_title(&self, joint: JointIndex) -> String {
+        let named = || parameter_words::place(&self.description.joint(joint).name);
+        self.servo_of(joint).map_or_else(named, |servo| servo.title.clone())
     }
 
     /// An arm by its short name.

@@ -91,6 +91,19 @@ impl PartialEq for Touchscreen {
 }
 
 impl Manifest {
+    /// With nothing but the rig, by the name that the program knows it by, and when it began.
+    pub fn of_rig(name: impl Into<String>, started: jiff::Timestamp) -> Self {
+        Self {
+            rig: RigReference::Named(name.into()),
+            started,
+            operator: String::new(),
+            notes: String::new(),
+            touchscreen: None,
+            chain: None,
+            extra: toml::Table::new(),
+        }
+    }
+
     /// Reads `session.toml`. Comments are not kept.
     pub fn read(file: &Path) -> Result<Self, FormatError> {
         Self::parse(file, &text_file::read(file)?)

@@ -57,6 +57,18 @@ pub struct Session {
 }
 
 impl Session {
+    /// With this manifest and nothing measured yet.
+    pub fn new(manifest: Manifest) -> Self {
+        Self {
+            manifest,
+            touches: None,
+            localizations: None,
+            poses: None,
+            stereo: StereoImages::default(),
+            log: None,
+        }
+    }
+
     /// Reads a session folder; images and log are listed, not opened.
     pub fn read(folder: &Path) -> Result<Self, SessionError> {
         if !folder.is_dir() {

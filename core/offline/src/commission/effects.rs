@@ -4,11 +4,13 @@
 
 use plumbline_effects::rig_model::ModelEffect;
 use plumbline_effects::{Effect, RigModel};
-use plumbline_engine::gap::model_name;
+use plumbline_engine::gap::at_tip::moved_m;
 use plumbline_engine::gap::search::{measured, search};
 use plumbline_engine::gap::sessions::stamps;
 use plumbline_engine::gap::store::{KeptFinding, KeptSession, Store};
+use plumbline_engine::gap::{model_name, model_view};
 use plumbline_engine::rig_models::{self, name_of};
+use plumbline_engine::view::AddedEffect;
 use plumbline_fit::{ArmTouches, Chosen, HeldOut, Name, SizedArm, Which};
 use plumbline_gap::Options;
 use plumbline_handeye::{Sizing, Start};
@@ -49,7 +51,9 @@ pub(super) fn run(lab: &Lab, context: &dyn JobContext) -> Result<Step, Commissio
                 sd_rad.to_degrees()
             ));
         }
-        put_in_use(lab, &sizing.model(&arm, None, &finding.sentence, jiff::Timestamp::now())?)?;
+        let model = sizing.model(&arm, None, &finding.sentence, jiff::Timestamp::now())?;
+        step.notes.extend(small(&model_view(&model, &moved_m(&model, &lab.rig)).effects));
+        put_in_use(lab, &model)?;
         place_for_others(lab, touches, &arm)
     })?;
     Ok(step)
@@ -74,6 +78,27 @@ fn told(step: &mut Step, chosen: &Chosen) {
     step.notes.push(format!("In use: {what}."));
     let (before_m, after_m) = (chosen.held_out.nothing_m, chosen.error_m());
     (step.before_mm, step.after_mm) = (before_m.map(|m| 1e3 * m), after_m.map(|m| 1e3 * m));
+}
+
+/// So many small effects are told, the largest; the others are counted.
+const MOST_SMALL: usize = 3;
+
+/// Which effects in use move next to nothing, and why they stay; `None`: there is none.
+fn small(effects: &[AddedEffect]) -> Option<String> {
+    let mut small: Vec<&AddedEffect> = effects.iter().filter(|effect| effect.is_small()).collect();
+    small.sort_by(|a, b| b.moved_m.unwrap_or(0.0).total_cmp(&a.moved_m.unwrap_or(0.0)));
+    let told: Vec<String> = small.iter().take(MOST_SMALL).map(|effect| effect.told()).collect();
+    let more = match small.len().saturating_sub(MOST_SMALL) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    (!told.is_empty()).then(|| {
+        format!(
+            "In use although they do little: {}{more}. They stay because the touches tell them from noise, or because \
+             together they let the arm err less on touches held out.",
+            told.join("; ")
+        )
+    })
 }
 
 /// The effects in use of the arm that touched, to be sized anew.
@@ -128,4 +153,29 @@ pub(super) fn place_for_others(
         .collect();
     let placement = place_screen(&lab.rig.touchscreen, &touches).map_err(CommissionError::room)?;
     lab.accept_placement(&placement.of_rig(&lab.rig.name))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn small_effects_are_told_with_their_size_and_why_they_stay() {
+        let effect = |k: usize, moved_m| AddedEffect {
+            name: format!("joint-zero@{k}"),
+            is_named: false,
+            title: format!("Joint {k}: zero position off"),
+            parameters: vec![],
+            is_of_eyes: false,
+            moved_m,
+        };
+        assert_eq!(small(&[effect(0, Some(3e-3)), effect(1, None)]), None);
+        let effects: Vec<AddedEffect> = (0..5).map(|k| effect(k, Some(1e-4 * k as f64))).collect();
+        let said = small(&effects).expect("all are small");
+        assert!(
+            said.contains("Joint 4: zero position off (small: 0.40 mm at the fingertip); Joint 3"),
+            "{said}"
+        );
+        assert!(said.contains(" and 2 more. They stay because"), "{said}");
+    }
 }

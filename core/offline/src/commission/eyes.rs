@@ -128,8 +128,14 @@ impl Album<'_> {
         let found = find_in_pair(&name, &gray(&sight.left), &gray(&sight.right), &self.board);
         self.postures.insert(name.clone(), sight.posture.angles_rad().to_vec());
         let stamp = Stamp { seq: self.seen.len() as u64, captured_at: Instant::now() };
-        let frame =
-            StereoFrame { stamp, left: sight.left, right: sight.right, time_difference_s: None, name: None };
+        let frame = StereoFrame {
+            stamp,
+            left: sight.left,
+            right: sight.right,
+            time_difference_s: None,
+            name: None,
+            beside: Default::default(),
+        };
         let folder = self.lab.sessions().join(EYES_SESSION);
         Keep { frame, name, folder, started: jiff::Timestamp::now() }.run()?;
         self.seen.push(found.observation);

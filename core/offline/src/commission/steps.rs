@@ -1,7 +1,7 @@
 //! What was done so far: one file in the lab's folder, written when a step is done, read when the work
 //! is started again.
 
-use std::hash::{Hash as _, Hasher as _};
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::path::{Path, PathBuf};
 
 use plumbline_model::files::{self, Size};
@@ -67,7 +67,7 @@ pub(super) struct Steps {
 impl Steps {
     /// What was done in this folder for this twin; nothing where nothing was begun.
     pub fn read(folder: &Path, scenario: &Scenario, seed: u64) -> Result<Self, CommissionError> {
-        let fingerprint = fingerprint(scenario);
+        let fingerprint = scenario.fingerprint();
         let fresh = Self { format: FORMAT, twin: scenario.name.clone(), fingerprint, seed, done: Vec::new() };
         let file = folder.join(FILE);
         if !files::present(&file)? {
@@ -79,7 +79,8 @@ impl Steps {
         if kept.format != FORMAT {
             return Err(unusable(format!("format {}, this program reads {FORMAT}", kept.format)));
         }
-        if (&kept.twin, &kept.fingerprint, kept.seed) != (&fresh.twin, &fresh.fingerprint, fresh.seed) {
+        let is_same = is_of(&kept.fingerprint, scenario) && kept.seed == seed;
+        if kept.twin != fresh.twin || !is_same {
             let who = |steps: &Self| format!("\"{}\" with seed {}", steps.twin, steps.seed);
             let (found, wanted) = (who(&kept), who(&fresh));
             return Err(CommissionError::OtherTwin { folder: folder.to_owned(), found, wanted });
@@ -137,7 +138,7 @@ pub(crate) fn twin_of(folder: &Path, asked: Option<&str>) -> Result<Scenario, Co
         None => Scenario::named_or_file(&whose.twin)
             .map_err(|_| CommissionError::LabOfFile { folder: folder.to_owned(), of: whose.twin.clone() })?,
     };
-    match whose.fingerprint == fingerprint(&scenario) {
+    match is_of(&whose.fingerprint, &scenario) {
         true => Ok(scenario),
         // A file may be called as one that comes with the program.
         false if asked.is_none() => {
@@ -151,14 +152,23 @@ pub(crate) fn twin_of(folder: &Path, asked: Option<&str>) -> Result<Scenario, Co
 pub(crate) fn identity(folder: &Path, scenario: &Scenario) -> Result<String, CommissionError> {
     let file = folder.join(FILE);
     let steps = if files::present(&file)? { files::read_text(&file, Size::TEXT)? } else { String::new() };
-    let mut hasher = std::hash::DefaultHasher::new();
-    (fingerprint(scenario), steps).hash(&mut hasher);
+    // An experiment that was begun with a lab of before goes on with it.
+    let before = fingerprint_before(scenario);
+    let fingerprint = if steps.contains(&before) { before } else { scenario.fingerprint() };
+    let mut hasher = DefaultHasher::new();
+    (fingerprint, steps).hash(&mut hasher);
     Ok(format!("{:016x}", hasher.finish()))
 }
 
-/// A number that differs between scenarios. It tells nothing of what they hide.
-fn fingerprint(scenario: &Scenario) -> String {
-    let mut hasher = std::hash::DefaultHasher::new();
+/// Whether what a lab keeps of its twin is that of a scenario.
+fn is_of(kept: &str, scenario: &Scenario) -> bool {
+    kept == scenario.fingerprint() || kept == fingerprint_before(scenario)
+}
+
+/// What labs kept that were commissioned before scenarios had a fingerprint of their values: a number of how this
+/// program prints them.
+fn fingerprint_before(scenario: &Scenario) -> String {
+    let mut hasher = DefaultHasher::new();
     format!("{scenario:?}").hash(&mut hasher);
     format!("{:016x}", hasher.finish())
 }
@@ -189,5 +199,51 @@ mod tests {
         std::fs::write(lab.join(FILE), text.replace("\"perfect\"", "\"of a file\"")).expect("written");
         let said = twin_of(lab, None).expect_err("a file").to_string();
         assert!(said.contains("name the file with --twin"), "{said}");
+    }
+
+    #[test]
+    fn a_lab_of_before_is_known_and_what_it_was_experimented_with_goes_on() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let (lab, perfect) = (folder.path(), Scenario::named_or_file("perfect").expect("comes along"));
+        let mut steps = Steps::read(lab, &perfect, 1).expect("begun");
+        assert_eq!(steps.fingerprint, perfect.fingerprint());
+        steps.add(lab, Step::new("eyes", "pixels")).expect("written");
+        let fresh = identity(lab, &perfect).expect("readable");
+
+        let text = std::fs::read_to_string(lab.join(FILE)).expect("written");
+        let before = text.replace(&perfect.fingerprint(), &fingerprint_before(&perfect));
+        assert_ne!(before, text);
+        std::fs::write(lab.join(FILE), &before).expect("written");
+        assert_eq!(twin_of(lab, None).expect("its own").name, "perfect");
+        let again = Steps::read(lab, &perfect, 1).expect("the same twin");
+        assert_eq!(again.fingerprint, fingerprint_before(&perfect), "it stays as it was written");
+        let mut hasher = DefaultHasher::new();
+        (fingerprint_before(&perfect), before).hash(&mut hasher);
+        let as_before = format!("{:016x}", hasher.finish());
+        assert_eq!(identity(lab, &perfect).expect("readable"), as_before);
+        assert_ne!(as_before, fresh);
+        assert!(Steps::read(lab, &perfect, 2).is_err(), "another seed");
+    }
+
+    #[test]
+    fn a_lab_of_a_file_is_known_however_the_file_is_written_and_not_when_a_value_is_another() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let text =
+            "format = 1\nname = \"mine\"\ntitle = \"Mine\"\nabout = \"Mine.\"\n[contact]\ntoy_mass = 2.0\n";
+        let (file, lab) = (folder.path().join("mine.toml"), folder.path().join("lab"));
+        let written = |text: &str| {
+            std::fs::write(&file, text).expect("written");
+            file.display().to_string()
+        };
+        let first = Scenario::named_or_file(&written(text)).expect("a file");
+        let mut steps = Steps::read(&lab, &first, 1).expect("begun");
+        steps.add(&lab, Step::new("eyes", "pixels")).expect("written");
+        let identity_of = |scenario: &Scenario| identity(&lab, scenario).expect("readable");
+        let reformatted = text.replace("toy_mass = 2.0", "# Twice as heavy.\n  toy_mass=2e0");
+        let same = twin_of(&lab, Some(&written(&reformatted))).expect("the same twin");
+        assert_eq!(identity_of(&same), identity_of(&first));
+        let other = text.replace("toy_mass = 2.0", "toy_mass = 2.5");
+        let said = twin_of(&lab, Some(&written(&other))).expect_err("another twin").to_string();
+        assert!(said.contains("mine"), "{said}");
     }
 }

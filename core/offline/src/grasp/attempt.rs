@@ -46,6 +46,11 @@ pub(super) trait Meddler {
     /// Changes what the eyes have seen.
     fn sees(&mut self, _step: Step, _sight: &mut Sight) {}
 
+    /// Keeps the eyes from giving a pair.
+    fn blinds(&mut self, _step: Step) -> Result<(), Halt> {
+        Ok(())
+    }
+
     /// Changes what the servos say.
     fn feels(&mut self, _step: Step, _servos: &mut [ServoState]) {}
 
@@ -319,6 +324,7 @@ impl Body for Watched<'_, '_> {
             _ => {}
         }
         let mut sight = self.body.look()?;
+        self.meddler.borrow_mut().blinds(step)?;
         self.meddler.borrow_mut().sees(step, &mut sight);
         Ok(sight)
     }

@@ -5,13 +5,15 @@ use plumbline_gap::finding::NamedEffect;
 use plumbline_gap::{Finding, Verdict};
 
 use super::figures::unit;
-use super::{Area, Detail, GAP, GUTTER, HEADING, heading, rule};
+use super::{Area, Detail, GAP, GUTTER, HEADING, count, heading, rule};
 use crate::drawing::{Anchor, Drawing, Style, ink};
 use crate::font;
 use crate::values::{percent, significant, with_interval};
 
+/// Effects that are printed, the largest; the others are counted.
+const MOST_EFFECTS: usize = 3;
 /// Parameters of one effect that are printed.
-const MOST_PARAMETERS: usize = 6;
+const MOST_PARAMETERS: usize = 3;
 /// Between two effects.
 const BETWEEN: f64 = 7.0;
 const PAD: f64 = 9.0;
@@ -24,13 +26,13 @@ pub fn height(finding: &Finding, width: f64, detail: Detail) -> f64 {
     let entries: f64 = finding
         .effects
         .iter()
-        .take(detail.effects)
+        .take(MOST_EFFECTS)
         .map(|effect| Entry::of(effect, finding, width, detail).height() + BETWEEN)
         .sum();
     HEADING
         + 2.0
         + entries
-        + if finding.effects.len() > detail.effects { Style::SMALL.leading() } else { 0.0 }
+        + if finding.effects.len() > MOST_EFFECTS { Style::SMALL.leading() } else { 0.0 }
         + GAP
         - 4.0
 }
@@ -47,13 +49,14 @@ pub fn draw(drawing: &mut Drawing, area: Area, finding: &Finding, detail: Detail
     };
     heading(drawing, area, title);
     let mut y = area.y + HEADING + 2.0;
-    for effect in finding.effects.iter().take(detail.effects) {
+    for effect in finding.effects.iter().take(MOST_EFFECTS) {
         let entry = Entry::of(effect, finding, area.width, detail);
         entry.draw(drawing, area.x, y, area.width);
         y += entry.height() + BETWEEN;
     }
-    if finding.effects.len() > detail.effects {
-        let text = format!("and {} smaller ones", finding.effects.len() - detail.effects);
+    if finding.effects.len() > MOST_EFFECTS {
+        let rest = count(finding.effects.len() - MOST_EFFECTS, "smaller one", "smaller ones");
+        let text = format!("and {rest}");
         drawing.text([area.x, y + 5.0], text, Style::SMALL);
         y += Style::SMALL.leading();
     }
@@ -185,14 +188,21 @@ fn columns(width: f64) -> [f64; 3] {
     [0.38 * free, 0.43 * free, 0.19 * free]
 }
 
-/// Parameters, and what the effect does to the rows in the unit of held-out errors: `(name, scale)`.
+/// Parameters whose intervals exclude zero, the others counted, and what the effect does to the rows in the unit of
+/// held-out errors: `(name, scale)`.
 fn values(effect: &NamedEffect, (unit, scale): (&str, f64)) -> String {
+    let (told, zero): (Vec<_>, Vec<_>) = effect.parameters.iter().partition(|found| found.is_told());
     let named = effect.parameters.len() > 1;
     let mut parts: Vec<String> =
-        effect.parameters.iter().take(MOST_PARAMETERS).map(|found| with_interval(found, named)).collect();
-    if effect.parameters.len() > MOST_PARAMETERS {
+        told.iter().take(MOST_PARAMETERS).map(|found| with_interval(found, named)).collect();
+    if told.len() > MOST_PARAMETERS {
         parts.push("…".to_owned());
     }
+    parts.extend(match (told.is_empty(), zero.len()) {
+        (_, 0) => None,
+        (true, _) => Some("size not told from zero".to_owned()),
+        (false, more) => Some(format!("{} not told from zero", count(more, "other", "others"))),
+    });
     let moved = format!("{} {unit} in these rows", significant(scale * effect.size_m, 2));
     if effect.size_m.is_finite() {
         parts.push(moved);

@@ -69,8 +69,6 @@ impl Area {
 /// How much of the words is printed. The more effects, the less of each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Detail {
-    /// Effects.
-    pub effects: usize,
     /// Lines of an effect's name, and of its values.
     pub name: usize,
     /// Lines of what an effect means.
@@ -83,13 +81,11 @@ pub struct Detail {
     pub note: usize,
 }
 
-const DETAILS: [Detail; 6] = [
-    Detail { effects: 6, name: 2, meaning: 3, remedy: 3, others: 2, note: 8 },
-    Detail { effects: 6, name: 2, meaning: 2, remedy: 2, others: 2, note: 6 },
-    Detail { effects: 6, name: 1, meaning: 1, remedy: 1, others: 1, note: 5 },
-    Detail { effects: 5, name: 1, meaning: 1, remedy: 1, others: 1, note: 4 },
-    Detail { effects: 4, name: 1, meaning: 1, remedy: 1, others: 1, note: 4 },
-    Detail { effects: 3, name: 1, meaning: 1, remedy: 1, others: 1, note: 4 },
+const DETAILS: [Detail; 4] = [
+    Detail { name: 2, meaning: 3, remedy: 3, others: 2, note: 8 },
+    Detail { name: 2, meaning: 2, remedy: 2, others: 2, note: 6 },
+    Detail { name: 1, meaning: 1, remedy: 1, others: 1, note: 5 },
+    Detail { name: 1, meaning: 1, remedy: 1, others: 1, note: 4 },
 ];
 
 /// Draws the page.

@@ -123,6 +123,29 @@ fn what_an_effect_does_to_image_points_is_in_pixels() {
 }
 
 #[test]
+fn at_most_three_effects_are_told_and_values_that_may_be_zero_are_counted() {
+    let crowded = said(&draw(&sample::crowded(), &ReportContext::default()));
+    assert!(crowded.contains("and 4 smaller ones"), "{crowded}");
+    let mut finding = sample::named();
+    let mut other = finding.effects[0].parameters[0].clone();
+    (other.value, other.low, other.high) = (0.0123, -0.01, 0.0346);
+    finding.effects[0].parameters.push(other);
+    let one = said(&draw(&finding, &ReportContext::default()));
+    assert!(one.contains("1 other not told from zero") && !one.contains("0.7 ±"), "{one}");
+    finding.effects[0].parameters.remove(0);
+    let none = said(&draw(&finding, &ReportContext::default()));
+    assert!(none.contains("size not told from zero") && !none.contains("0.7 ±"), "{none}");
+}
+
+#[test]
+fn warnings_stand_beside_the_verdict_as_sentences() {
+    let mut finding = sample::named();
+    finding.warnings = vec!["there are too few repeats".to_owned(), "row 7 lies far off".to_owned()];
+    let said = said(&draw(&finding, &ReportContext::default()));
+    assert!(said.contains("Beside the verdict: There are too few repeats. Row 7 lies far off."), "{said}");
+}
+
+#[test]
 fn each_verdict_has_its_own_words() {
     let says = |finding: &Finding, part: &str| {
         let said = said(&draw(finding, &sample::context()));

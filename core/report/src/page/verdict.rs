@@ -60,10 +60,19 @@ pub fn draw(drawing: &mut Drawing, finding: &Finding, context: &ReportContext) -
     );
     let mut y = drawing.paragraph([MARGIN, 98.0], width, &finding.sentence, Style::LEAD, 4);
     if !finding.warnings.is_empty() {
-        let text = format!("Odd about the data: {}", finding.warnings.join("; "));
+        let said: Vec<String> = finding.warnings.iter().map(|warning| sentence(warning)).collect();
+        let text = format!("Beside the verdict: {}", said.join(" "));
         y = drawing.paragraph([MARGIN, y - 1.0], width, &text, Style::BODY.color(ink::WARNING), 2);
     }
     y
+}
+
+/// A warning as a sentence of its own.
+fn sentence(warning: &str) -> String {
+    let mut letters = warning.chars();
+    let first = letters.next().map_or_else(String::new, |first| first.to_uppercase().collect());
+    let end = if warning.ends_with(['.', '!', '?', '…']) { "" } else { "." };
+    format!("{first}{}{end}", letters.as_str())
 }
 
 /// Draws the foot; returns where it starts.
@@ -141,6 +150,12 @@ mod tests {
         assert!(!title(&finding).contains("agree"), "{}", title(&finding));
         assert_ne!(color(&finding), ink::ACCEPTED);
         assert!(judged(&finding).contains("the noise is not known"), "{}", judged(&finding));
+    }
+
+    #[test]
+    fn warnings_are_sentences_of_their_own() {
+        assert_eq!(sentence("row 7 lies far off"), "Row 7 lies far off.");
+        assert_eq!(sentence("Done."), "Done.");
     }
 
     #[test]

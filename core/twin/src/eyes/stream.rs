@@ -185,6 +185,7 @@ impl Loop {
             right: Arc::new(pair.right),
             time_difference_s: Some(0.0),
             name: None,
+            beside: Default::default(),
         })
     }
 

@@ -5,12 +5,13 @@
 //! out of everything that calibrates, searches, trains or grasps.
 
 pub mod drawn;
+mod fingerprint;
 
 use std::collections::BTreeMap;
 use std::path::Path;
 
 use plumbline_model::files::{self, Size, told};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::error::TwinError;
 
@@ -25,7 +26,7 @@ const BUILT_IN: &[(&str, &str)] = &[
 
 /// Hidden reality of a twin. Vectors are x, y, z; rotations are rotation vectors (axis times
 /// angle); meters, radians.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scenario {
     /// Version of the format.
@@ -60,7 +61,7 @@ pub struct Scenario {
 }
 
 /// How servos hold.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ServoReality {
     /// What holds the load.
@@ -69,7 +70,7 @@ pub(crate) struct ServoReality {
 }
 
 /// What holds the load of a servo.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Holding {
     /// A torque in proportion to the error, as in the real servos: they droop, and friction makes
@@ -81,7 +82,7 @@ pub(crate) enum Holding {
 }
 
 /// What is different about a joint.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct JointReality {
     /// Turn of the driven part when the encoder reads zero, rad.
@@ -97,7 +98,7 @@ pub(crate) struct JointReality {
 }
 
 /// A rigid displacement, axes of the robot, about the thing's own middle.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct Displacement {
     /// Turn.
@@ -107,7 +108,7 @@ pub(crate) struct Displacement {
 }
 
 /// What is different about the touchscreen.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct ScreenReality {
     /// Turn, axes of the robot, about its middle.
@@ -125,7 +126,7 @@ impl Default for ScreenReality {
 }
 
 /// What is different about the eyes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct EyesReality {
     /// Turn of both eyes together, axes of the head, about the left eye.
@@ -140,7 +141,7 @@ pub(crate) struct EyesReality {
 
 /// Two heat nodes, the electronics of the eyes and the housing around them, and how the housing
 /// turns the lenses as it expands.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct HeatReality {
     /// Heat of the electronics, W.
@@ -174,7 +175,7 @@ impl Default for HeatReality {
 }
 
 /// Where a fingertip really is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct FingertipReality {
     /// Shift of the whole finger, axes of its link.
@@ -182,7 +183,7 @@ pub(crate) struct FingertipReality {
 }
 
 /// How things touch.
-#[derive(Clone, Copy, PartialEq, Deserialize)]
+#[derive(Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct ContactReality {
     /// Coefficient of friction of toys against hands and table.
@@ -197,7 +198,8 @@ pub(crate) struct ContactReality {
     pub touch_threshold_n: f64,
 }
 
-/// What says nothing of sizes reads as it did before there were any: labs know their twin by this text.
+/// What says nothing of sizes reads as it did before there were any: labs that were commissioned before there was a
+/// [fingerprint](Scenario::fingerprint) know their twin by this text.
 impl std::fmt::Debug for ContactReality {
     fn fmt(&self, to: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { toy_friction, toy_mass, toy_size, glass_friction, touch_threshold_n } = self;

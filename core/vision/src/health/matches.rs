@@ -60,6 +60,17 @@ pub enum HealthError {
         /// Pairs that were looked at.
         pairs: usize,
     },
+    /// The machine was too slow for the time that was given.
+    #[error(
+        "only {found} places could be matched between the eyes in the time that there was, {needed} are needed: close \
+         other programs, or wait until this one has less to do, and judge again"
+    )]
+    OutOfTime {
+        /// Matches found.
+        found: usize,
+        /// Matches needed.
+        needed: usize,
+    },
     /// The places do not say how the eye has turned.
     #[error(
         "what the eyes see lies too close together to tell how they have turned: look at more of the table, or turn the head"
@@ -107,13 +118,28 @@ pub fn find_matches(
     cameras: &StereoCameras,
     pairs: &[(GrayImage, GrayImage)],
 ) -> Result<(Vec<Match>, MatchCount), HealthError> {
+    find_matches_until(cameras, pairs, &|| false)
+}
+
+/// The same, with an end: once `is_over`, no further place is looked for, and what was found until then counts.
+///
+/// # Errors
+/// When the images are of another size, or too little is matched until then.
+pub fn find_matches_until(
+    cameras: &StereoCameras,
+    pairs: &[(GrayImage, GrayImage)],
+    is_over: &(dyn Fn() -> bool + Sync),
+) -> Result<(Vec<Match>, MatchCount), HealthError> {
     let ready =
         pairs.iter().map(|(left, right)| make_ready(cameras, left, right)).collect::<Result<Vec<_>, _>>()?;
-    let start = first_turn(cameras, &ready)?;
+    let start = first_turn(cameras, &ready, is_over)?;
     let mut seen_by = turned(cameras, &start);
-    let mut places = all(&seen_by, &ready)?;
+    let mut places = all(&seen_by, &ready, is_over)?;
     // Eyes that turned far are looked at again from where they turned to, each place from where it was found.
     for _ in 0..2 {
+        if is_over() {
+            break;
+        }
         let found: Vec<Match> = places.iter().map(|place| place.found).collect();
         let Ok(turn) = fit_turn(&seen_by, &found) else { break };
         if turn.rotation_rad.norm() * focal_px(cameras) < AGAIN_PX {
@@ -129,6 +155,9 @@ pub fn find_matches(
     let matches: Vec<Match> = places.into_iter().map(|place| place.found).collect();
     let count =
         MatchCount { tried: ready.iter().map(|pair| pair.corners.len()).sum(), matched: matches.len() };
+    if matches.len() < LEAST_MATCHES && is_over() {
+        return Err(HealthError::OutOfTime { found: matches.len(), needed: LEAST_MATCHES });
+    }
     if matches.len() < LEAST_MATCHES {
         return Err(HealthError::TooFew { found: matches.len(), needed: LEAST_MATCHES, pairs: pairs.len() });
     }
@@ -165,7 +194,11 @@ fn focal_px(cameras: &StereoCameras) -> f64 {
 }
 
 /// The turn about the baseline with which most of the strongest corners are matched.
-fn first_turn(cameras: &StereoCameras, ready: &[Ready]) -> Result<Vector3<f64>, HealthError> {
+fn first_turn(
+    cameras: &StereoCameras,
+    ready: &[Ready],
+    is_over: &(dyn Fn() -> bool + Sync),
+) -> Result<Vector3<f64>, HealthError> {
     let Some(most) = ready.iter().max_by_key(|pair| pair.corners.len()) else { return Ok(Vector3::zeros()) };
     let strongest = &most.corners[..most.corners.len().min(FIRST_PLACES)];
     let mut best = (0, Vector3::zeros());
@@ -178,7 +211,7 @@ fn first_turn(cameras: &StereoCameras, ready: &[Ready]) -> Result<Vector3<f64>, 
             best = (matched, turn);
         }
         // Nothing beats what nearly everything agrees with.
-        if 2 * matched > strongest.len() {
+        if 2 * matched > strongest.len() || is_over() {
             break;
         }
     }
@@ -191,14 +224,18 @@ struct Place {
     near: Candidate,
 }
 
-fn all(cameras: &StereoCameras, ready: &[Ready]) -> Result<Vec<Place>, HealthError> {
+fn all(
+    cameras: &StereoCameras,
+    ready: &[Ready],
+    is_over: &(dyn Fn() -> bool + Sync),
+) -> Result<Vec<Place>, HealthError> {
     let geometry = EpipolarGeometry::new(cameras).ok_or(NoBaseline)?;
     let corners =
         ready.iter().enumerate().flat_map(|(pair, ready)| ready.corners.iter().map(move |at| (pair, *at)));
     let corners: Vec<_> = corners.collect();
     Ok(corners
         .into_par_iter()
-        .filter_map(|(pair, at)| one(&geometry, &ready[pair].scene, pair, at))
+        .filter_map(|(pair, at)| if is_over() { None } else { one(&geometry, &ready[pair].scene, pair, at) })
         .collect())
 }
 

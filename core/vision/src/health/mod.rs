@@ -19,5 +19,5 @@ mod tests;
 
 pub use cost::{Cost, cost};
 pub use judged::{BEARABLE_M, Better, Judged, TableRows, better, judge};
-pub use matches::{HealthError, Match, MatchCount, find_matches};
+pub use matches::{HealthError, Match, MatchCount, find_matches, find_matches_until};
 pub use turn::{Turn, epipolar_px, fit_turn, fits_better_by, turned};

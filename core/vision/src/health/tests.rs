@@ -99,3 +99,11 @@ fn an_eye_that_is_covered_says_nothing() {
     let covered = GrayImage::from_pixel(640, 480, image::Luma([30]));
     assert!(matches!(find_matches(&eyes, &[(left, covered)]), Err(HealthError::TooFew { .. })));
 }
+
+#[test]
+fn where_the_time_is_over_no_place_is_looked_for_and_that_is_said() {
+    let eyes = nico_like_eyes();
+    let error = find_matches_until(&eyes, &pairs(&eyes, 1), &|| true).expect_err("no time");
+    assert!(matches!(error, HealthError::OutOfTime { found: 0, .. }), "{error}");
+    assert!(error.to_string().contains("close other programs"), "{error}");
+}

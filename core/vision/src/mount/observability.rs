@@ -55,8 +55,8 @@ pub(super) fn check_head_poses(
             let (low, high) = angles.fold((f64::MAX, f64::MIN), |(l, h), a| (l.min(a), h.max(a)));
             high - low
         });
-        let names = [rig.eyes.pan, rig.eyes.tilt].map(|joint| rig.description.joint(joint).name.clone());
-        let [pan, tilt] = names;
+        let [pan, tilt] =
+            [rig.eyes.pan, rig.eyes.tilt].map(|joint| format!("\"{}\"", rig.joint_title(joint)));
         let (turned, missing) = if span[0] > span[1] { (pan, tilt) } else { (tilt, pan) };
         return Err(MountError::OneAxis { turned, missing });
     }
@@ -99,7 +99,7 @@ pub(super) fn not_seen(
         for (k, joint) in [rig.eyes.pan, rig.eyes.tilt].into_iter().enumerate() {
             let sigma = covariance[(at + k, at + k)].sqrt();
             if sigma > NOTHING_LEARNED * sd {
-                let name = &rig.description.joint(joint).name;
+                let name = rig.joint_title(joint);
                 let rival = match (k, target) {
                     (0, Target::UnknownBoard(_)) => {
                         "it turns only the unknown place of the board: look at points whose place is known"
@@ -109,8 +109,10 @@ pub(super) fn not_seen(
                     }
                     _ => more,
                 };
-                sentences
-                    .push(format!("not seen: the zero of {name}, left at ±{:.2}°: {rival}", sd.to_degrees()));
+                sentences.push(format!(
+                    "not seen: the zero of \"{name}\", left at ±{:.2}°: {rival}",
+                    sd.to_degrees()
+                ));
             }
         }
     }

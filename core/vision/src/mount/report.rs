@@ -82,8 +82,8 @@ fn remarks(asked: &Asked<'_>, problem: &Problem, state: &State, lenses_included:
     for (joint, sd_rad) in [rig.eyes.pan, rig.eyes.tilt].into_iter().zip(problem.priors.angle_rad) {
         if sd_rad > 1.2 * stated_rad {
             remarks.push(format!(
-                "{} stands ±{:.2}° from where its encoder says, more than the ±{:.2}° expected: its gears have slack, or the head had not come to rest; the stated uncertainty includes it",
-                rig.description.joint(joint).name,
+                "the joint \"{}\" stands ±{:.2}° from where its encoder says, more than the ±{:.2}° expected: its gears have slack, or the head had not come to rest; the stated uncertainty includes it",
+                rig.joint_title(joint),
                 sd_rad.to_degrees(),
                 stated_rad.to_degrees()
             ));

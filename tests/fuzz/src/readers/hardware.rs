@@ -49,6 +49,13 @@ fn rest_of_a_recording(file: &Path) -> Vec<String> {
     let told = Topic::ALL.map(|topic| match topic {
         Topic::Joints => recording.joints().map(|told| format!("{told:?}")),
         Topic::Notes => recording.notes().map(|told| format!("{told:?}")),
+        Topic::Transforms => recording.robot_from_left().map(|told| format!("{told:?}")),
+        Topic::Eyes => {
+            let pairs: Result<Vec<_>, _> = (0..recording.pair_count())
+                .map(|index| recording.pair(index).map(|pair| pair.eyes))
+                .collect();
+            pairs.map(|eyes| format!("{eyes:?}"))
+        }
         topic => recording.told(topic).map(|told| format!("{told:?}")),
     });
     told.into_iter().map(|told| told.unwrap_or_else(|error| error.to_string())).collect()

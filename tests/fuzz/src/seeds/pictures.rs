@@ -6,7 +6,11 @@ use std::path::Path;
 use image::{DynamicImage, ImageFormat, Luma, Rgb, RgbImage, Rgba};
 
 use jiff::{SignedDuration, Timestamp};
-use plumbline_recording::{About, Attached, JointReading, Jpeg, Level, Note, RecordingWriter, Topic};
+use plumbline_model::EyesThen;
+use plumbline_model::robot::default_rig;
+use plumbline_recording::{
+    About, Attached, EyePlaces, JointReading, Jpeg, Level, Note, Outline, RecordingWriter, Topic,
+};
 
 use super::{Problem, put};
 
@@ -49,10 +53,17 @@ fn recording(folder: &Path) -> Result<(), Problem> {
     };
     let about = About { rig: "nico".to_owned(), attached: vec![rig], ..About::default() };
     let mut writer = RecordingWriter::create(&folder.join("log.mcap"), start, &about)?;
+    let rig_of_all = default_rig();
+    let robot_from_left = rig_of_all.robot_from_left(&rig_of_all.home());
     for number in 0..6_u8 {
         let at = start + SignedDuration::from_millis(500 * i64::from(number));
         let jpeg = Jpeg(encoded(&DynamicImage::ImageRgb8(picture(16, 12)), ImageFormat::Jpeg)?);
         writer.pair(at, u64::from(number), [jpeg.clone(), jpeg], Some(0.001))?;
+        let then = EyesThen { on_s: Some(f64::from(number)), head_rad: Some([0.1, -0.6]) };
+        let places = EyePlaces { robot_from_left, right_from_left: rig_of_all.eyes.cameras.right_from_left };
+        writer.eyes(at, u64::from(number), &then, Some(&places))?;
+        let outline = Outline { box_px: [1.0, 2.0, 8.0, 9.0], text: "tomato 0.9".to_owned() };
+        writer.outlines(at, &[vec![outline], vec![]])?;
         let joint = JointReading { name: "head_z".to_owned(), angle_rad: 0.1, speed_rad_s: None };
         writer.joints(at, &[joint])?;
         writer.note(at, &Note { level: Level::Warning, text: "hot".to_owned() })?;

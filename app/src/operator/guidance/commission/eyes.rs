@@ -55,7 +55,8 @@ fn pairs(view: &View) -> usize {
 fn solve(view: &View) -> Said {
     let count = pairs(view);
     let sentence = format!(
-        "{count} pairs are collected. Solving moves nothing, and nothing is used before you accept it."
+        "Collected: {}. Solving moves nothing, and nothing is used before you accept it.",
+        format::count(count, "pair")
     );
     // What a person still holds is not collected while it is solved.
     let capture = view.eyes.auto_capture.then_some(Action::ToggleAutoCapture);
@@ -86,7 +87,7 @@ fn twin(view: &View, again: bool) -> Said {
     let (places, action) = if again || count > 0 {
         (format!("all {} places", view.twin.board_places), RobotAction::TourBoard)
     } else {
-        (format!("{} places", view.twin.few_board_places), RobotAction::TourFew)
+        (format::count(view.twin.few_board_places, "place"), RobotAction::TourFew)
     };
     Said::press(
         format!(

@@ -185,7 +185,7 @@ fn mount(view: &View) -> Said {
 /// What was found and what it is good for; all of it stands in the panes of the gap.
 fn in_short(finding: &Finding, addable: &[usize]) -> String {
     let named = addable.iter().filter_map(|index| finding.effects.get(*index));
-    let names: Vec<String> = named.map(crate::operator::words::gap::short).collect();
+    let names: Vec<String> = named.map(crate::operator::words::effect::short).collect();
     let closed = finding.shown.closure.map_or_else(String::new, |closure| {
         format!(" On touches that were held out it closes {} of the gap.", format::percent(closure))
     });

@@ -65,7 +65,7 @@ pub fn done_in_words(figure: &CommissionFigure) -> String {
         CommissionFigure::Unknown => "done".to_owned(),
         CommissionFigure::Pixels(px) => format!("{} left over in the images", format::px(*px)),
         CommissionFigure::Placed { rms_m, touches } => {
-            format!("{touches} touches agree to {}", format::mm(*rms_m))
+            format!("{}, which agree to {}", format::count(*touches, "touch"), format::mm(*rms_m))
         }
         CommissionFigure::Touches(touches) => format::count(*touches, "touch"),
         CommissionFigure::Effects(effects) if effects.is_empty() => {

@@ -15,7 +15,7 @@ use egui::{Button, ScrollArea, Ui};
 use plumbline_engine::view::TablesView;
 use plumbline_engine::{GraspTable, ModelsCommand, TablesCommand, View};
 use plumbline_widgets::buttons::choice;
-use plumbline_widgets::format::Quantity;
+use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::table_map::{Outline, Place, ScalarField, TableMap, TableScene};
 use plumbline_widgets::theme::{self, Role, space};
 
@@ -111,14 +111,14 @@ fn hint(ui: &mut Ui, cx: &PanelContext<'_>, tables: &TablesView, rows: &[PointRo
     } else if panel.adding {
         "Click the map where the new point shall lie.".to_owned()
     } else if rows.len() < 4 {
-        format!("{} more points are needed before the {what} can answer.", 4 - rows.len())
+        format!("It needs {} more before the {what} can answer.", format::count(4 - rows.len(), "point"))
     } else {
         let errors: Vec<f64> = rows.iter().filter_map(|row| row.error).collect();
         let rms = (errors.iter().map(|e| e * e).sum::<f64>() / errors.len().max(1) as f64).sqrt();
         let rms = if errors.is_empty() { "not known".to_owned() } else { quantity(panel.table).text(rms) };
         format!(
-            "{} points. Left out, a point is missed by {rms} (rms). Larger dots miss by more.",
-            rows.len()
+            "{}. Left out, a point is missed by {rms} (rms). Larger dots miss by more.",
+            format::count(rows.len(), "point")
         )
     };
     ui.label(theme::small(ui, text));
@@ -249,11 +249,6 @@ fn edit_buttons(ui: &mut Ui, cx: &mut PanelContext<'_>, tables: &TablesView, row
         {
             cx.state.models.tables.chosen = None;
             cx.outbox.send(ModelsCommand::Tables(TablesCommand::Remove { table, point }));
-        }
-        let undo = ui.add_enabled(tables.can_undo, Button::new("Undo"));
-        if undo.on_disabled_hover_text("nothing was changed").clicked() {
-            cx.state.models.tables.chosen = None;
-            cx.outbox.send(ModelsCommand::Tables(TablesCommand::Undo));
         }
     });
 }

@@ -4,6 +4,7 @@ mod shown;
 
 use std::path::Path;
 use std::sync::Arc;
+use std::time::Instant;
 
 use plumbline_model::StereoFrame;
 use plumbline_vision::detect_places::Rates;
@@ -30,6 +31,8 @@ pub struct DetectAround {
     pub photographs: bool,
     /// What places rest on, or why there are none.
     pub setup: Result<Arc<LiveSetup>, NoSetup>,
+    /// Whether the arm moves, which needs the processor more.
+    pub arm_moves: bool,
 }
 
 /// Detection, live.
@@ -56,6 +59,8 @@ pub struct DetectWorkflow {
     down: Option<String>,
     /// Of the classes of the detector in use.
     rates: Option<Rates>,
+    /// When the first pair that was looked at was taken: looks that give way are counted from it.
+    first: Option<Instant>,
     clock: StageClock,
 }
 
@@ -100,6 +105,7 @@ impl DetectWorkflow {
             failed: None,
             down: None,
             rates: None,
+            first: None,
             clock: StageClock::default(),
         }
     }

@@ -3,12 +3,13 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use plumbline_model::Stamp;
 use plumbline_model::detection::ClassIndex;
 use plumbline_vision::detect_places::Rates;
 
 use super::{Accepted, DetectAround, DetectWorkflow};
 use crate::detect::command::DetectorChoice;
-use crate::detect::stage::{DetectInput, DetectOutput};
+use crate::detect::stage::{DetectInput, DetectOutput, Turn};
 use crate::detect::view::{ClassRates, DetectView, DetectorState};
 use crate::ground::stage::Timed;
 
@@ -16,13 +17,18 @@ use crate::ground::stage::Timed;
 const COUNTED_PAIRS: usize = 300;
 /// Boxes that are this much older than the picture are not where things are any more.
 const BEHIND: Duration = Duration::from_millis(1500);
+/// While the arm moves one look is taken in so long: on two cores a network takes both of them.
+const GIVES_WAY: Duration = Duration::from_secs(1);
 
 impl DetectWorkflow {
     /// What the stage is to do with the newest pair, if anything.
     pub fn input(&self, around: DetectAround) -> Option<DetectInput> {
         let in_use = self.detector.as_ref().filter(|_| self.wanted)?;
+        let frame = around.newest?;
+        let gives_way = around.arm_moves && !around.photographs;
         Some(DetectInput {
-            frame: around.newest?,
+            turn: turn(&frame.stamp, self.first.filter(|_| gives_way)),
+            frame,
             opened: around.opened,
             detector: in_use.detector.clone(),
             settings: self.settings.clone(),
@@ -39,6 +45,7 @@ impl DetectWorkflow {
         if !of_this || result.opened != opened || !self.wanted {
             return;
         }
+        self.first.get_or_insert(output.stamp.captured_at);
         if result.is_new {
             self.clock.note(now, output.stamp.captured_at, output.busy);
         }
@@ -107,6 +114,17 @@ impl DetectWorkflow {
     }
 }
 
+/// Which look a pair belongs to; `first`: it gives way, and looks are counted from then.
+fn turn(stamp: &Stamp, first: Option<Instant>) -> Turn {
+    match first {
+        None => Turn::Pair(stamp.seq),
+        Some(first) => {
+            let since = stamp.captured_at.saturating_duration_since(first);
+            Turn::GivesWay(since.as_secs() / GIVES_WAY.as_secs())
+        }
+    }
+}
+
 /// Why a result must not be taken for the present.
 fn stale(found: &Accepted, around: &DetectAround) -> Option<String> {
     let newest = around.newest.as_ref()?;
@@ -116,12 +134,39 @@ fn stale(found: &Accepted, around: &DetectAround) -> Option<String> {
     }
     let behind = now.captured_at.saturating_duration_since(of.captured_at);
     if behind > BEHIND {
-        return Some(format!(
-            "Boxes of {:.1} s before this picture: the detector does not keep up.",
-            behind.as_secs_f64()
-        ));
+        let why = match around.arm_moves {
+            true => "while the arm moves the detector looks once a second at most",
+            false => "the detector does not keep up",
+        };
+        return Some(format!("Boxes of {:.1} s before this picture: {why}.", behind.as_secs_f64()));
     }
     let generation = around.setup.as_ref().ok().map(|setup| setup.generation);
     (found.generation != generation)
         .then(|| "Places rest on the calibration or aim before; they are being computed anew.".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// How many looks are begun in a second and a half of pairs at 30 Hz.
+    fn looks(first: Option<Instant>, begun: Instant) -> usize {
+        let mut turns: Vec<Turn> = (0..45)
+            .map(|seq| {
+                let captured_at = begun + Duration::from_millis(seq * 33);
+                turn(&Stamp { seq, captured_at }, first)
+            })
+            .collect();
+        turns.dedup();
+        turns.len()
+    }
+
+    #[test]
+    fn a_detector_gives_way_to_an_arm_that_moves() {
+        let begun = Instant::now();
+        assert_eq!(looks(None, begun), 45, "every pair, as fast as it goes");
+        assert_eq!(looks(Some(begun), begun), 2, "one look a second");
+        let stamp = Stamp { seq: 1, captured_at: begun };
+        assert_ne!(turn(&stamp, None), turn(&stamp, Some(begun)), "when it stands it looks at once");
+    }
 }

@@ -1,11 +1,14 @@
 //! Judges the calibration in use, and a proposed one, by ordinary pairs.
 
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use image::{GrayImage, RgbImage};
 use plumbline_model::robot::Rig;
-use plumbline_model::{Cancelled, JobContext, StereoCalibration, StereoCameras};
-use plumbline_vision::health::{Better, HealthError, Judged, Match, TableRows, better, find_matches, judge};
+use plumbline_model::{Cancelled, JobContext, StereoCalibration};
+use plumbline_vision::health::{
+    Better, HealthError, Judged, Match, TableRows, better, find_matches_until, judge,
+};
 
 use crate::eyes::view::{EyesHealth, HealthFigures, HealthState, ProposalHealth};
 use crate::ground::text::sentence;
@@ -28,18 +31,39 @@ pub struct Health {
     pub proposed: Option<Arc<StereoCalibration>>,
     /// The robot, for where it works.
     pub rig: Arc<Rig>,
+    /// What was seen until then is judged; nobody waits for longer.
+    pub until: Instant,
+}
+
+/// What came of it.
+#[derive(Clone, Debug)]
+pub struct HealthEnded {
+    /// What the pairs say.
+    pub state: HealthState,
+    /// Time that processors were busy with it, at most.
+    pub busy: Duration,
 }
 
 impl Health {
     /// What came out; that the pairs say nothing is an outcome, too.
-    pub fn run(self, context: &dyn JobContext) -> Result<HealthState, Cancelled> {
+    pub fn run(self, context: &dyn JobContext) -> Result<HealthEnded, Cancelled> {
+        let began = Instant::now();
+        let state = self.looked(context)?;
+        // Places are looked for by all processors, and what one of them waits is counted, too.
+        let processors = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+        let busy = began.elapsed().saturating_mul(u32::try_from(processors).unwrap_or(u32::MAX));
+        Ok(HealthEnded { state, busy })
+    }
+
+    fn looked(&self, context: &dyn JobContext) -> Result<HealthState, Cancelled> {
         context.checkpoint()?;
         context.report(0.1, "matching the eyes");
         let gray = |[left, right]: &Pictures| -> (GrayImage, GrayImage) {
             (image::imageops::grayscale(&**left), image::imageops::grayscale(&**right))
         };
         let pairs: Vec<(GrayImage, GrayImage)> = self.pairs.iter().map(gray).collect();
-        let matches = match find_matches(&self.in_use.cameras, &pairs) {
+        let is_over = || context.checkpoint().is_err() || Instant::now() >= self.until;
+        let matches = match find_matches_until(&self.in_use.cameras, &pairs, &is_over) {
             Ok((matches, _)) => matches,
             Err(error) => return Ok(said(&error)),
         };
@@ -62,7 +86,7 @@ impl Health {
                     return Ok(HealthState::Failed(NOT_SEEN.to_owned()));
                 };
                 let better = better((cameras, &in_use.turn), (other, &judged.turn), matches)?;
-                Some((figures(&judged), proposal_health(cameras, other, better)))
+                Some((figures(&judged), proposal_health(&self.in_use, calibration, better)))
             }
         };
         let (pairs, places) = (self.pairs.len(), matches.len());
@@ -71,12 +95,20 @@ impl Health {
     }
 }
 
-fn proposal_health(in_use: &StereoCameras, proposed: &StereoCameras, better: Better) -> ProposalHealth {
-    let distance = proposed.baseline_m() / in_use.baseline_m();
+fn proposal_health(
+    in_use: &StereoCalibration,
+    proposed: &StereoCalibration,
+    better: Better,
+) -> ProposalHealth {
+    let distance = proposed.cameras.baseline_m() / in_use.cameras.baseline_m();
+    let knows_when = |calibration: &StereoCalibration| {
+        calibration.evidence.as_ref().is_some_and(|evidence| evidence.minutes_since_on.is_some())
+    };
     match better {
         Better::Proposed => ProposalHealth::Better,
         Better::InUse => ProposalHealth::Worse,
         Better::Undecided if (distance - 1.0).abs() > SAME_DISTANCE => ProposalHealth::Untold,
+        Better::Undecided if knows_when(proposed) && !knows_when(in_use) => ProposalHealth::KnowsWhen,
         Better::Undecided => ProposalHealth::Undecided,
     }
 }

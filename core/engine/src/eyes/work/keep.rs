@@ -72,6 +72,7 @@ mod tests {
             right: image.clone(),
             time_difference_s: None,
             name: None,
+            beside: Default::default(),
         };
         for name in ["capture 001", "capture 002"] {
             let started = jiff::Timestamp::UNIX_EPOCH;
@@ -96,6 +97,7 @@ mod tests {
             right: image,
             time_difference_s: None,
             name: None,
+            beside: Default::default(),
         };
         let (folder, started) = (session.to_owned(), jiff::Timestamp::UNIX_EPOCH);
         Keep { frame, name: format!("capture {number:04}"), folder, started }.run()

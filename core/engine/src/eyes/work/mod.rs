@@ -12,7 +12,7 @@ mod solve;
 
 use plumbline_model::{JobContext, counted};
 
-use super::view::{BoardSeen, HealthState};
+use super::view::BoardSeen;
 use crate::ground;
 use crate::ground::LongWork;
 use crate::ground::jobs::JobError;
@@ -20,7 +20,7 @@ use crate::ground::jobs::JobError;
 pub use accept::{Accept, Accepted};
 pub use capture::{Capture, Captured, Recognize, board_seen, find_in_both, glimpse_in_both, gray};
 pub use export::Export;
-pub use health::{Health, Pictures};
+pub use health::{Health, HealthEnded, Pictures};
 pub use keep::Keep;
 pub use open::{Open, OpenWhat, Opened};
 pub use recording::{CollectRecording, Collected, collect_folder};
@@ -70,7 +70,7 @@ pub enum EyesResult {
     /// A calibration read from a file.
     Opened(Opened),
     /// What ordinary pairs say of the calibrations.
-    Health(HealthState),
+    Health(HealthEnded),
     /// A calibration that is kept.
     Accepted(Accepted),
     /// Files that were written.

@@ -13,6 +13,7 @@ use crate::eyes::auto_capture::{AutoCapture, Look};
 use crate::eyes::coverage::{self, Novelty};
 use crate::eyes::place::{place_of, rough_pose};
 use crate::eyes::sharpness::of_both;
+use crate::eyes::times::taken_then;
 use crate::eyes::view::{CaptureHint, CollectedPair};
 use crate::ground::jobs::JobError;
 
@@ -189,7 +190,8 @@ impl<'a> VideoSearch<'a> {
             let [left_image, right_image] = images.map(|image| Some(std::sync::Arc::new(image)));
             let name = frame.name.clone().unwrap_or_else(|| format!("frame {index:06}"));
             self.collected.sizes_px = Some([size_px, size(&frame.right)]);
-            let pair = CollectedPair { name, left, right, left_image, right_image, place, taken: None };
+            let taken = frame.beside.then.as_ref().and_then(taken_then);
+            let pair = CollectedPair { name, left, right, left_image, right_image, place, taken };
             self.collected.pairs.push(pair);
         }
     }

@@ -58,10 +58,12 @@ fn a_port_that_is_unplugged_in_the_approach_is_told_and_after_connecting_the_nex
     assert_eq!(trouble, reason, "the first gate says what the lamp says");
 
     fault(&bench, "port-closed", false);
-    bench.send(RobotCommand::ConnectTwin { scenario: "perfect".to_owned() });
+    bench.send(RobotCommand::Scan);
     assert!(bench.make_ready(Toy::Tomato, EASY_M), "its eyes were rendered before");
     let moved_rad = bench.creeps_rad();
     assert!(moved_rad < HOLDS_RAD, "connected again it moves by {moved_rad} rad");
+    // It is the same twin, whose hand was left in the air.
+    bench.hand(HandStep::Home);
     grasps_again(&bench);
 }
 

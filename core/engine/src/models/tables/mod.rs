@@ -11,6 +11,8 @@ use std::sync::Arc;
 
 use plumbline_correction::tables::{HeightPoint, HeightTable, Node, Table, TableError, YawPoint, YawTable};
 
+use plumbline_model::counted;
+
 use super::command::GraspTable;
 
 /// Yaw points whose heights differ by no more were measured at one height, m.
@@ -64,7 +66,7 @@ impl Tables {
     pub fn with_read(&self, read: &ReadTable) -> (Self, String) {
         match read {
             ReadTable::Height(read) => {
-                let said = format!("The height table was read: {} points.", read.points.len());
+                let said = format!("The height table was read: {}.", counted(read.points.len(), "point"));
                 (Self { height: Some(read.clone()), yaw: self.yaw.clone() }, said)
             }
             ReadTable::Yaw(read) => {
@@ -129,7 +131,8 @@ fn yaw_sentence(read: usize, heights_m: &[f64], kept: usize, replaced: usize) ->
         0 => String::new(),
         n => format!(", {n} replaced"),
     };
-    format!("Yaw table: {read} points at {at} read{replaced}, {kept} at other heights kept.")
+    let read = counted(read, "point");
+    format!("Yaw table: {read} at {at} read{replaced}, {kept} at other heights kept.")
 }
 
 /// To a tenth, without a trailing zero.

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use plumbline_correction::tables::{HeightTable, Node, Table, TableError, YawTable};
-use plumbline_model::JobContext;
 use plumbline_model::robot::Rig;
+use plumbline_model::{JobContext, counted};
 
 use super::{ReadTable, Tables};
 use crate::ground::LongWork;
@@ -128,10 +128,10 @@ impl TablesResult {
         match self {
             Self::Kept(_) => "The tables are kept.".to_owned(),
             Self::Imported(ReadTable::Height(table)) => {
-                format!("The height table was read: {} points.", table.points.len())
+                format!("The height table was read: {}.", counted(table.points.len(), "point"))
             }
             Self::Imported(ReadTable::Yaw(table)) => {
-                format!("The yaw table was read: {} points.", table.points.len())
+                format!("The yaw table was read: {}.", counted(table.points.len(), "point"))
             }
             Self::Exported(file) => format!("The table was written to {}.", file.display()),
         }

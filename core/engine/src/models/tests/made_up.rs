@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 use plumbline_model::robot::Rig;
-use plumbline_model::session::{Chain, Manifest, RigReference, Screen, TouchRow, TouchTable, Touchscreen};
+use plumbline_model::session::{Chain, Manifest, Screen, TouchRow, TouchTable, Touchscreen};
 use plumbline_model::{Pixel, Point, Robot, Session};
 
 /// The rig that comes with the program.
@@ -39,20 +39,9 @@ pub fn made_up_session(rig: &Rig) -> Session {
     };
     let rows: Vec<TouchRow> = (0..7).flat_map(|j| (0..9).map(move |i| touch(i, j))).collect();
     let manifest = Manifest {
-        rig: RigReference::Named(rig.name.clone()),
-        started: "2026-05-01T10:00:00Z".parse().expect("a time"),
-        operator: String::new(),
-        notes: String::new(),
         touchscreen: Some(screen.clone()),
         chain: Some(Chain { tip: "right_index_tip".to_owned(), joints: joints.clone() }),
-        extra: toml::Table::new(),
+        ..Manifest::of_rig(rig.name.as_str(), "2026-05-01T10:00:00Z".parse().expect("a time"))
     };
-    Session {
-        manifest,
-        touches: Some(TouchTable::from_rows(joints, &rows)),
-        localizations: None,
-        poses: None,
-        stereo: Default::default(),
-        log: None,
-    }
+    Session { touches: Some(TouchTable::from_rows(joints, &rows)), ..Session::new(manifest) }
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use plumbline_hardware::joints::{BusStatistics, HoldReason, JointReading, JointState, Motion};
+use plumbline_hardware::joints::{JointReading, JointState};
 use plumbline_model::Stamp;
 use plumbline_model::robot::{JointIndex, Rig};
 
@@ -15,37 +15,12 @@ pub fn state(
     silent: &[JointIndex],
 ) -> Arc<JointState> {
     let reading = |servo: &plumbline_model::robot::Servo| JointReading {
-        joint: servo.joint,
-        servo: servo.id,
         angle_rad: Some(angle_rad),
         goal_rad: Some(goal_rad),
-        speed_rad_s: None,
-        load: None,
-        temperature_c: None,
-        voltage_v: None,
-        current_a: None,
-        torque_on: None,
-        force: None,
-        let_go: false,
         read_at: Some(captured_at),
-        age: None,
-        problem: None,
+        ..JointReading::new(servo.joint, servo.id)
     };
-    Arc::new(JointState {
-        stamp: Stamp { seq: 1, captured_at },
-        joints: rig.servos.iter().map(reading).collect(),
-        motion: Motion::Holding(HoldReason::Connected),
-        stopped: false,
-        measured: None,
-        unknown: Arc::from(silent),
-        late: Arc::from([]),
-        slow_answers: 0,
-        commanded: None,
-        bus: BusStatistics::default(),
-        outcomes: Arc::from([]),
-        refusal: None,
-        warnings: Arc::from([]),
-        scan: Arc::default(),
-        gone: None,
-    })
+    let joints: Vec<JointReading> = rig.servos.iter().map(reading).collect();
+    let state = JointState::new(Stamp { seq: 1, captured_at }, joints);
+    Arc::new(JointState { unknown: Arc::from(silent), ..state })
 }

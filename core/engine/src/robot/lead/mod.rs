@@ -4,6 +4,7 @@
 mod closing;
 mod course;
 mod follow;
+mod late;
 #[cfg(test)]
 pub(crate) mod made_up;
 mod wire;
@@ -14,7 +15,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use crossbeam_channel::TryRecvError;
-use plumbline_hardware::joints::{HoldReason, JointState, Refusal};
+use plumbline_hardware::joints::{HoldReason, JointState, Motion, Refusal};
 
 use self::closing::Closing;
 use self::follow::Following;
@@ -22,6 +23,7 @@ use super::command::RobotCommand;
 use super::control::RobotControl;
 use super::unable::Unable;
 use super::worker::Worker;
+use crate::ground::notice::NoticeLevel;
 
 /// Whoever leads the arm just now, if anybody does, and what is being done for him.
 #[derive(Default)]
@@ -47,6 +49,12 @@ impl Leading {
     /// The same while the arm may move by it.
     pub fn moving_title(&self) -> Option<String> {
         self.led.as_ref().filter(|led| led.moves).map(|led| led.title.clone())
+    }
+
+    /// Whether what is done for him pauses and the arm stands meanwhile.
+    pub fn rests(&self, motion: &Motion) -> bool {
+        let pauses = self.led.as_ref().is_some_and(|led| led.moves && led.reins.is_tight());
+        pauses && matches!(motion, Motion::Holding(_))
     }
 
     /// Whether a command would get in the way.
@@ -125,7 +133,10 @@ impl Worker {
         };
         let (doing, stepped) = match doing {
             Doing::Following(mut following) => {
-                let stepped = following.step(self, &state, pauses);
+                let stepped = following.step(self, &state, pauses, now);
+                if let Some(news) = following.take_news() {
+                    self.note(NoticeLevel::Info, news);
+                }
                 (Doing::Following(following), stepped)
             }
             Doing::Closing(mut closing) => {

@@ -4,8 +4,8 @@ use std::path::Path;
 use std::time::Duration;
 
 use plumbline_hardware::{
-    Next, Opener, Replay, ReplayRate, Report, Retrying, SourceError, SourceKind, SourceOptions, SourceSpec,
-    SourceStatus as Presence, StereoSource, open_retrying,
+    Growth, Next, Opener, Replay, ReplayRate, Report, Retrying, SourceError, SourceKind, SourceOptions,
+    SourceSpec, SourceStatus as Presence, StereoSource, open_retrying,
 };
 use plumbline_model::StereoFrame;
 use plumbline_model::robot::default_rig;
@@ -105,11 +105,13 @@ impl Player {
             Control::Play => self.play(),
             Control::Pause => {
                 self.playing = false;
-                Ok(())
+                self.follow(false)
             }
-            Control::Step(by) => self.step(by),
-            Control::Seek(index) => self.seek(index),
+            // Who looks back does not want to be taken to the end again.
+            Control::Step(by) => self.follow(false).and_then(|()| self.step(by)),
+            Control::Seek(index) => self.follow(false).and_then(|()| self.seek(index)),
             Control::Loop(looping) => self.set_replay(Replay { looping, ..self.replay }),
+            Control::Follow(on) => self.follow(on),
             Control::PairsPerSecond(rate) => {
                 self.set_replay(Replay { rate: ReplayRate::PairsPerSecond(rate), ..self.replay })
             }
@@ -166,6 +168,7 @@ impl Player {
             Presence::Running if playing => SourceStatus::Running,
             Presence::Running => SourceStatus::Paused,
         };
+        let growth = source.as_finite().map_or(Growth::Ended, |finite| finite.growth());
         let description = source.describe();
         let counters = source.counters();
         SourceView {
@@ -179,6 +182,7 @@ impl Player {
                 playing,
                 looping,
                 pairs_per_second: description.rate_hz,
+                growth,
             }),
             photographs: is_photographs(description.kind),
             image_size_px: description.image_size,
@@ -284,6 +288,15 @@ impl Player {
     fn seek(&mut self, index: u64) -> Result<(), SourceError> {
         self.wind(index)?;
         (self.show_one, self.ended, self.stepping_back_to) = (true, false, None);
+        Ok(())
+    }
+
+    /// Goes to the end of what is still being written, and on with it.
+    fn follow(&mut self, on: bool) -> Result<(), SourceError> {
+        self.finite(|finite| finite.follow(on)).unwrap_or(Ok(()))?;
+        if self.finite(|finite| finite.growth()) == Some(Growth::Followed) {
+            (self.playing, self.ended, self.stepping_back_to) = (true, false, None);
+        }
         Ok(())
     }
 

@@ -18,6 +18,7 @@ fn pairs(count: usize) -> Vec<StereoFrame> {
             right: Arc::new(RgbImage::new(4, 3)),
             time_difference_s: None,
             name: Some(i.to_string()),
+            beside: Default::default(),
         })
         .collect()
 }

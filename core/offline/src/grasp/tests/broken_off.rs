@@ -153,6 +153,39 @@ fn a_servo_that_gets_too_hot_on_the_way_ends_it_and_when_it_is_cool_the_next_gra
     }
 }
 
+/// Eyes that give no pair from a step on.
+struct Blinded(Step);
+
+impl Meddler for Blinded {
+    fn blinds(&mut self, step: Step) -> Result<(), Halt> {
+        let said = "none came within 20 s: look whether they are open";
+        if step == self.0 { Err(Halt::Blind(said.to_owned())) } else { Ok(()) }
+    }
+}
+
+#[test]
+fn eyes_that_are_lost_on_the_way_end_it_and_what_nobody_saw_lifted_is_not_called_held() {
+    let mut bench = perfect();
+    let task = task(Method::M5, Toy::Tomato, EASY_M);
+    let mut world = bench.world(&task).expect("a world");
+    for at in [Step::Look, Step::Align, Step::Check] {
+        let (record, judged) =
+            bench.attempt_in(&mut world, &task, &mut Blinded(at)).expect("nothing is kept");
+        assert_eq!(failure(&record), Some(Failure::NotSeen), "{at:?}: {:?}", record.outcome);
+        let Some(Outcome::Failed { why, .. }) = &record.outcome else { unreachable!("just seen") };
+        assert!(why.contains("the eyes give no pairs") && why.contains("look whether"), "{at:?}: {why}");
+        assert_eq!(record.step, Some(at));
+        assert_eq!(judged.lifted, at == Step::Check, "{at:?}");
+        assert!(at != Step::Look || record.moments.is_empty(), "nothing moved");
+        assert_holds(&format!("{at:?}"), &bench, &mut world);
+        if at != Step::Look {
+            home(&bench, &mut world, Toy::Tomato);
+        }
+    }
+    let (record, judged) = bench.attempt_in(&mut world, &task, &mut ()).expect("nothing is kept");
+    assert!(judged.lifted && record.is_success(), "{:?}", record.outcome);
+}
+
 /// M4 with the table as flat as described for the hand.
 fn with_heights() -> Bench {
     let rig = Rig::built_in("nico").expect("valid");

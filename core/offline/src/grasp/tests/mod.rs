@@ -322,6 +322,14 @@ fn two_shards_put_together_are_one_run_byte_for_byte() {
         name.to_string_lossy().ends_with("-m5.tracks.csv") && text.starts_with(b"t_s,")
     };
     assert_eq!(files(&merged_in).iter().filter(is_tracks).count(), 3, "the joints of every attempt");
+    // One that was interrupted goes on with what is missing, and is the same.
+    let before = files(&whole_in);
+    for ending in ["json", "tracks.csv"] {
+        std::fs::remove_file(whole_in.join("attempts").join(format!("00001-m5.{ending}")))
+            .expect("it was there");
+    }
+    let (again, _) = run("whole", None);
+    assert_eq!((again, files(&whole_in)), (whole, before));
     // Another experiment is not mixed in.
     let other = Experiment { seed: 8, ..experiment.clone() };
     let refused = begin(&whole_in, &other).expect_err("another one").to_string();

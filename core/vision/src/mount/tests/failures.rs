@@ -50,8 +50,8 @@ fn a_head_that_stands_still_is_refused() {
 #[test]
 fn turning_about_one_axis_only_names_the_other_joint() {
     for (axis, poses) in [
-        ("head_z", (0..8).map(|i| (-0.4 + 0.1 * f64::from(i), -0.5)).collect::<Vec<_>>()),
-        ("head_y", (0..8).map(|i| (0.0, -0.75 + 0.1 * f64::from(i))).collect()),
+        ("\"Head left–right\"", (0..8).map(|i| (-0.4 + 0.1 * f64::from(i), -0.5)).collect::<Vec<_>>()),
+        ("\"Head down–up\"", (0..8).map(|i| (0.0, -0.75 + 0.1 * f64::from(i))).collect()),
     ] {
         let mut world = World::new(6);
         let corners = world.corners();

@@ -94,19 +94,25 @@ fn encoder_zeros_that_cannot_be_told_from_the_mount_are_said() {
     let options = MountOptions { head_zero_sd_rad: Some(0.02), ..exact() };
     let solved = world.solve_with(&views, &Target::UnknownBoard(board()), &options).expect("solvable");
     assert!(
-        solved.not_seen.iter().any(|s| s.contains("zero of head_z") && s.contains("unknown place")),
+        solved
+            .not_seen
+            .iter()
+            .any(|s| s.contains("zero of \"Head left–right\"") && s.contains("unknown place")),
         "{:?}",
         solved.not_seen
     );
     assert!(
-        solved.not_seen.iter().any(|s| s.contains("zero of head_y") && s.contains("together they are right"))
+        solved
+            .not_seen
+            .iter()
+            .any(|s| s.contains("zero of \"Head down–up\"") && s.contains("together they are right"))
     );
     let zeros = solved.head_zeros_rad.expect("asked for");
     assert!(zeros.iter().all(|zero| zero.sigma > 0.018), "{zeros:?}");
     // What cannot be told apart is uncertain together: the turn about y carries the zero's prior.
     assert!(solved.turned_sigma_rad().y > 0.018);
 
-    // With known points the zero of head_z shows.
+    // With known points the zero of the joint that turns the head sideways shows.
     let points = screen(&world);
     let mut views = vec![];
     for i in 0..12 {
@@ -116,8 +122,8 @@ fn encoder_zeros_that_cannot_be_told_from_the_mount_are_said() {
     let solved = world.solve_with(&views, &Target::KnownPoints(points), &options).expect("solvable");
     let zeros = solved.head_zeros_rad.expect("asked for");
     assert!(zeros[0].sigma < 0.01 && (zeros[0].value - 0.02).abs() < 3.0 * zeros[0].sigma, "{zeros:?}");
-    assert!(!solved.not_seen.iter().any(|s| s.contains("head_z")), "{:?}", solved.not_seen);
-    assert!(solved.not_seen.iter().any(|s| s.contains("head_y")), "{:?}", solved.not_seen);
+    assert!(!solved.not_seen.iter().any(|s| s.contains("left–right")), "{:?}", solved.not_seen);
+    assert!(solved.not_seen.iter().any(|s| s.contains("down–up")), "{:?}", solved.not_seen);
 }
 
 #[test]
@@ -198,7 +204,7 @@ fn known_points_that_are_elsewhere_and_slack_are_remarked() {
         world.solve_with(&views, &Target::KnownPoints(nominal), &MountOptions::default()).expect("solvable");
     assert!(solved.remarks.iter().any(|r| r.contains("known points lie")), "{:?}", solved.remarks);
     assert!(
-        solved.remarks.iter().any(|r| r.starts_with("head_z stands") && r.contains("slack")),
+        solved.remarks.iter().any(|r| r.contains("\"Head left–right\" stands") && r.contains("slack")),
         "{:?}",
         solved.remarks
     );

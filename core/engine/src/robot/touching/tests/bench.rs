@@ -4,8 +4,8 @@ use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
 use plumbline_hardware::joints::{
-    BusStatistics, Grip, HoldReason, JointReading, JointState, Motion, Move, MoveId, MoveOutcome, Refusal,
-    ScreenGone, Setpoint, Touch, TouchSource,
+    Grip, HoldReason, JointReading, JointState, Motion, Move, MoveId, MoveOutcome, Refusal, ScreenGone,
+    Setpoint, Touch, TouchSource,
 };
 use plumbline_model::robot::{Chain, JointIndex, Posture, Rig};
 use plumbline_model::touch_plan::Side;
@@ -84,38 +84,27 @@ impl Arm for FakeArm {
         let sign = if made.seq.is_multiple_of(2) { 1.0 } else { -1.0 };
         let measured = sagging(&made.commanded, SAG_RAD + sign * made.tremble_rad);
         let reading = |servo: &plumbline_model::robot::Servo| JointReading {
-            joint: servo.joint,
-            servo: servo.id,
             angle_rad: Some(measured[servo.joint]),
             goal_rad: Some(made.commanded[servo.joint]),
             speed_rad_s: Some(0.0),
             load: Some(made.load),
             temperature_c: Some(31.0),
             voltage_v: Some(12.0),
-            current_a: None,
             torque_on: Some(made.torque_on),
             force: Some(1.0),
-            let_go: false,
             read_at: Some(made.now),
             age: Some(Duration::ZERO),
-            problem: None,
+            ..JointReading::new(servo.joint, servo.id)
         };
+        let joints: Vec<JointReading> = self.rig.servos.iter().map(reading).collect();
         Some(Arc::new(JointState {
-            stamp: Stamp { seq: made.seq, captured_at: made.now },
-            joints: self.rig.servos.iter().map(reading).collect(),
             motion: made.motion.clone(),
-            stopped: false,
             measured: Some(measured),
-            unknown: Arc::from([]),
-            late: Arc::from([]),
-            slow_answers: 0,
             commanded: Some(made.commanded.clone()),
-            bus: BusStatistics::default(),
             outcomes: made.outcomes.clone().into(),
             refusal: made.refusal.clone(),
-            warnings: Arc::from([]),
             gone: made.gone.clone(),
-            scan: Arc::default(),
+            ..JointState::new(Stamp { seq: made.seq, captured_at: made.now }, joints)
         }))
     }
 

@@ -1,0 +1,230 @@
+//! Undo: one word, one key and one place for what was changed last on a screen, whichever workflow has to
+//! take it back.
+
+use std::borrow::Cow;
+
+use plumbline_engine::view::{Subject, TimelineEntry};
+use plumbline_engine::{
+    Command, EyesCommand, GapCommand, ModelsCommand, MountCommand, TablesCommand, TouchCommand, View,
+};
+
+use super::{GapAction, LabelsAction, ModelsAction};
+use crate::operator::Screen;
+
+/// What is taken back.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Undo {
+    /// Of what, in a word or two.
+    pub of: &'static str,
+    /// What goes, within a sentence.
+    pub what: String,
+    /// Who takes it back.
+    pub command: Command,
+}
+
+/// Why nothing is.
+type NoUndo = Cow<'static, str>;
+
+/// What Undo takes back on a screen: what is edited there, else the result that was put in use there.
+///
+/// # Errors
+/// Why there is nothing, within a sentence.
+pub fn undo(view: &View, screen: Screen) -> Result<Undo, NoUndo> {
+    match screen {
+        Screen::Collect => of_pairs(view),
+        Screen::Images => of_boxes(view),
+        Screen::Judge | Screen::Accept => of_result(view, Subject::Eyes),
+        Screen::Mount => of_result(view, Subject::Mount),
+        Screen::Touch => of_result(view, Subject::Screen),
+        // What is edited is finer than what is in use, and is what the hand was at.
+        Screen::Models if view.models.tables.can_undo => Ok(Undo {
+            of: "Grasp tables",
+            what: "the last change of grasp height and yaw".to_owned(),
+            command: ModelsCommand::Tables(TablesCommand::Undo).into(),
+        }),
+        Screen::Models => of_result(view, Subject::Correction),
+        Screen::Gap | Screen::HandEye | Screen::Drift => of_result(view, Subject::Effects),
+        Screen::Commission | Screen::Timeline => of_any(view),
+        Screen::Live | Screen::Robot | Screen::Grasp | Screen::Scores => {
+            Err("nothing on this screen is put in use: go where the result was made, or to the timeline"
+                .into())
+        }
+    }
+}
+
+fn of_pairs(view: &View) -> Result<Undo, NoUndo> {
+    if !view.eyes.can_undo {
+        return Err("no pair was added or deleted".into());
+    }
+    let what = "the last change of the pairs".to_owned();
+    Ok(Undo { of: "Pairs", what, command: EyesCommand::Undo.into() })
+}
+
+fn of_boxes(view: &View) -> Result<Undo, NoUndo> {
+    let action = LabelsAction::Undo;
+    match action.refusal(view) {
+        Some(why) => Err(why),
+        None => {
+            let command = action.command(view).ok_or("no image is open")?;
+            Ok(Undo { of: "Boxes", what: "the last change of the boxes".to_owned(), command })
+        }
+    }
+}
+
+/// The newest change of any kind of result.
+fn of_any(view: &View) -> Result<Undo, NoUndo> {
+    let mut newest = view.timeline.entries.iter().rev().filter(|entry| view.timeline.is_newest(entry));
+    newest
+        .find_map(|entry| of_result(view, entry.subject).ok())
+        .ok_or_else(|| "nothing was put in use that could be taken back".into())
+}
+
+/// What is in use of a kind of result.
+pub fn of_result(view: &View, subject: Subject) -> Result<Undo, NoUndo> {
+    let command = match subject {
+        Subject::Correction => workflow(ModelsAction::Undo.refusal(view), ModelsCommand::Undo)?,
+        Subject::Effects => workflow(GapAction::Undo.refusal(view), GapCommand::Undo)?,
+        Subject::Eyes | Subject::Mount | Subject::Screen => {
+            if !view.timeline.is_known {
+                return Err("the timeline of results is not read yet".into());
+            }
+            let before =
+                before(&view.timeline.entries, subject).ok_or("nothing was in use before that is known")?;
+            back_to(subject, before).ok_or("nothing was in use before that is known")?
+        }
+        Subject::Finding | Subject::Check => {
+            return Err("it was only measured, so that there is nothing to take back".into());
+        }
+    };
+    let in_use = view.timeline.in_use.iter().find(|now| now.subject == subject);
+    let what =
+        in_use.map_or_else(|| format!("the {}", subject.name().to_lowercase()), |now| now.title.clone());
+    Ok(Undo { of: subject.name(), what, command })
+}
+
+/// These keep the order in which theirs were in use themselves.
+fn workflow(refusal: Option<NoUndo>, command: impl Into<Command>) -> Result<Command, NoUndo> {
+    refusal.map_or_else(|| Ok(command.into()), Err)
+}
+
+/// What puts something of a kind in use by its id, or what is described; `None`: its workflow goes back step by step.
+pub fn back_to(subject: Subject, id: Option<&String>) -> Option<Command> {
+    Some(match (subject, id.cloned()) {
+        (Subject::Eyes, id) => EyesCommand::UseEarlier { id }.into(),
+        (Subject::Mount, Some(id)) => MountCommand::UseEarlier { id }.into(),
+        (Subject::Mount, None) => MountCommand::UseNominal.into(),
+        (Subject::Screen, Some(id)) => TouchCommand::UseEarlierPlacement { id }.into(),
+        (Subject::Screen, None) => TouchCommand::UseNominalPlacement.into(),
+        (Subject::Correction | Subject::Effects | Subject::Finding | Subject::Check, _) => return None,
+    })
+}
+
+/// What was in use before what is in use now: its id, where it was not as described. Undone step by step, as
+/// if what was taken back had never been; what was used again on purpose counts as a step of its own.
+fn before(entries: &[TimelineEntry], subject: Subject) -> Option<Option<&String>> {
+    let mut steps: Vec<Option<&String>> = Vec::new();
+    for entry in entries.iter().filter(|entry| entry.subject == subject) {
+        if steps.is_empty() {
+            steps.push(entry.id_before.as_ref());
+        }
+        let now = entry.id_after.as_ref();
+        if steps.len() > 1 && steps[steps.len() - 2] == now {
+            steps.pop();
+        } else {
+            steps.push(now);
+        }
+    }
+    steps.len().checked_sub(2).map(|at| steps[at])
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use plumbline_engine::view::{EntryKind, EyesView, InUseNow, TimelineView};
+
+    use super::*;
+
+    /// The ids that were in use one after the other, from nothing on.
+    fn entries(ids: &[Option<&str>]) -> Vec<TimelineEntry> {
+        let mut before = None;
+        let entry = |(number, id): (usize, &Option<&str>)| {
+            let after = id.map(str::to_owned);
+            TimelineEntry {
+                number: number as u64 + 1,
+                at: jiff::Timestamp::UNIX_EPOCH,
+                subject: Subject::Mount,
+                kind: EntryKind::PutInUse,
+                title: format!("mount {id:?}"),
+                before: None,
+                after: None,
+                basis: String::new(),
+                id_before: std::mem::replace(&mut before, after.clone()),
+                id_after: after,
+                outside: false,
+            }
+        };
+        ids.iter().enumerate().map(entry).collect()
+    }
+
+    fn back(ids: &[Option<&str>]) -> Option<Option<String>> {
+        before(&entries(ids), Subject::Mount).map(Option::<&String>::cloned)
+    }
+
+    #[test]
+    fn undo_goes_back_step_by_step_until_nothing_was_before() {
+        let [a, b, c] = ["a", "b", "c"].map(Some);
+        let id = |id: Option<&str>| Some(id.map(str::to_owned));
+        assert_eq!(back(&[]), None);
+        assert_eq!(back(&[a]), id(None), "as it is described");
+        assert_eq!(back(&[a, b, c]), id(b));
+        assert_eq!(back(&[a, b, c, b]), id(a), "what was undone is gone");
+        assert_eq!(back(&[a, b, c, b, a]), id(None));
+        assert_eq!(back(&[a, b, c, b, a, None]), None, "there is nothing left");
+        assert_eq!(back(&[a, b, c, a]), id(c), "an earlier one that was used again is a step of its own");
+        assert_eq!(back(&[a, b, None]), id(b), "so is going to none at all");
+    }
+
+    fn mounted(ids: &[Option<&str>]) -> View {
+        let entries = entries(ids);
+        let now = entries.last().map(|entry| InUseNow {
+            subject: Subject::Mount,
+            title: entry.title.clone(),
+            figure: None,
+            since: Some(entry.at),
+            entry: Some(entry.number),
+        });
+        let timeline =
+            TimelineView { is_known: true, entries: entries.into(), in_use: now.into_iter().collect() };
+        View { timeline: Arc::new(timeline), ..View::default() }
+    }
+
+    #[test]
+    fn each_screen_takes_back_its_own_and_the_timeline_the_newest() {
+        let view = mounted(&[Some("a"), Some("b")]);
+        let back: Command = MountCommand::UseEarlier { id: "a".to_owned() }.into();
+        for screen in [Screen::Mount, Screen::Timeline, Screen::Commission] {
+            let undo = undo(&view, screen).expect("a mount is in use");
+            assert_eq!((undo.of, &undo.command), ("Mount", &back), "{screen:?}");
+            assert!(undo.what.contains("mount"), "{}", undo.what);
+        }
+        let nominal = undo(&mounted(&[Some("a")]), Screen::Mount).expect("a mount is in use");
+        assert_eq!(nominal.command, MountCommand::UseNominal.into());
+        for screen in Screen::ALL
+            .into_iter()
+            .filter(|screen| !matches!(screen, Screen::Mount | Screen::Timeline | Screen::Commission))
+        {
+            assert!(undo(&view, screen).is_err(), "{screen:?} has nothing of it");
+        }
+    }
+
+    #[test]
+    fn pairs_are_taken_back_where_they_are_collected_and_not_where_they_are_judged() {
+        let eyes = Arc::new(EyesView { can_undo: true, ..EyesView::default() });
+        let view = View { eyes, ..View::default() };
+        assert_eq!(undo(&view, Screen::Collect).map(|undo| undo.command), Ok(EyesCommand::Undo.into()));
+        assert!(undo(&view, Screen::Judge).is_err());
+        let why = undo(&View::default(), Screen::Collect).expect_err("nothing was collected");
+        assert_eq!(why, "no pair was added or deleted");
+    }
+}

@@ -1,0 +1,86 @@
+//! How large an effect is: its values with their intervals, and what it does on the table.
+
+use egui::{Grid, RichText, TextStyle, Ui};
+use plumbline_widgets::theme::{self, space};
+use plumbline_widgets::{format, parameter};
+
+use crate::operator::snapshot::gap::{NamedEffect, Shown};
+use crate::operator::words::effect as effect_words;
+use crate::operator::words::gap as words;
+
+/// A value: what is said before it, the value, and how well it is known.
+type Row = [RichText; 3];
+
+/// Parameters whose intervals exclude zero, the others counted, and what the effect does on the table.
+pub fn sizes(ui: &mut Ui, effect: &NamedEffect, shown: &Shown) {
+    let (told, zero): (Vec<_>, Vec<_>) = effect.parameters.iter().partition(|found| found.is_told());
+    let not_told = effect_words::not_told(told.len(), zero.len());
+    let mut rows: Vec<Row> = told
+        .into_iter()
+        .map(|found| {
+            let name = theme::weak(ui, parameter::words(&found.name));
+            match &found.text {
+                Some(text) => [name, RichText::new(effect_words::choice(text)), RichText::new("")],
+                None => {
+                    let interval = parameter::interval(&found.name, found.low, found.high);
+                    let value = theme::strong(ui, parameter::value(&found.name, found.value));
+                    [name, value, theme::weak(ui, format!("{interval} (95 %)"))]
+                }
+            }
+        })
+        .collect();
+    if effect.size_m > 0.0 {
+        let sigmas = format::significant(effect.size_sigmas, 2);
+        let noise = theme::weak(ui, format!("rms, {sigmas} × the noise"));
+        rows.push([theme::weak(ui, "does"), RichText::new(words::error(shown, effect.size_m)), noise]);
+    }
+    if fits(ui, &rows) {
+        beside(ui, effect, rows);
+    } else {
+        below(ui, rows);
+    }
+    if let Some(said) = not_told {
+        ui.label(theme::small(ui, said));
+    }
+}
+
+/// Whether the columns of all rows stand beside each other in the room that is left.
+fn fits(ui: &Ui, rows: &[Row]) -> bool {
+    let width = |text: &RichText| {
+        let galley = egui::WidgetText::from(text.clone()).into_galley(
+            ui,
+            Some(egui::TextWrapMode::Extend),
+            f32::INFINITY,
+            TextStyle::Body,
+        );
+        galley.size().x
+    };
+    let columns: f32 =
+        (0..3).map(|column| rows.iter().map(|row| width(&row[column])).fold(0.0, f32::max)).sum();
+    columns + 2.0 * space::M <= ui.available_width()
+}
+
+fn beside(ui: &mut Ui, effect: &NamedEffect, rows: Vec<Row>) {
+    Grid::new(("size", &effect.id, &effect.site)).num_columns(3).spacing([space::M, 2.0]).show(ui, |ui| {
+        for row in rows {
+            for text in row {
+                ui.label(text);
+            }
+            ui.end_row();
+        }
+    });
+}
+
+/// Each value in lines of its own, as many as it needs.
+fn below(ui: &mut Ui, rows: Vec<Row>) {
+    for row in rows {
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing = egui::vec2(space::S, 2.0);
+            for text in row {
+                if !text.text().is_empty() {
+                    ui.label(text);
+                }
+            }
+        });
+    }
+}

@@ -1,0 +1,38 @@
+//! The one place of Undo: at the foot of the inspector, on every screen.
+
+use egui::{Button, Label, Margin, Panel, Ui};
+use plumbline_engine::View;
+use plumbline_widgets::theme::{self, space};
+
+use crate::operator::actions::undo::undo;
+use crate::operator::words::capitalized;
+use crate::operator::{Action, Outbox, Screen, shortcut_text};
+
+const HEIGHT: f32 = 40.0;
+
+pub(super) fn show(view: &View, screen: Screen, ui: &mut Ui, outbox: &mut Outbox) {
+    let undo = undo(view, screen);
+    let frame = egui::Frame::new().inner_margin(Margin { top: space::S as i8, ..Margin::ZERO });
+    let foot = Panel::bottom("undo").frame(frame).exact_size(HEIGHT).resizable(false);
+    foot.show_separator_line(false).show(ui, |ui| {
+        ui.horizontal(|ui| {
+            let button = ui.add_enabled(undo.is_ok(), Button::new("Undo"));
+            let button = match &undo {
+                Ok(undo) => {
+                    let keys = shortcut_text(ui.ctx(), Action::Undo).unwrap_or_default();
+                    button.on_hover_text(format!(
+                        "{keys}: takes back {}. Nothing is deleted that was in use.",
+                        undo.what
+                    ))
+                }
+                Err(why) => button.on_disabled_hover_text(capitalized(why)),
+            };
+            if button.clicked() {
+                outbox.act(Action::Undo);
+            }
+            if let Ok(undo) = &undo {
+                ui.add(Label::new(theme::small(ui, undo.of)).truncate());
+            }
+        });
+    });
+}

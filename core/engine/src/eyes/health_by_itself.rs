@@ -1,0 +1,140 @@
+//! Judging the calibration when nobody has asked: a proposal as soon as it is there, and the one in use now and then, so
+//! that it is said when it does not hold any more.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use plumbline_model::{StereoCalibration, StereoFrame};
+
+use super::clock::is_live;
+use super::health::{Ask, Of, goes_on};
+use super::view::EyesHealth;
+use super::work::Context;
+use super::workflow::{EyesAround, EyesWorkflow};
+use crate::ground::notice::NoticeLevel;
+
+/// Eyes that were just opened are left to settle for so long.
+const SETTLED: Duration = Duration::from_secs(10);
+/// The calibration in use is judged no more often than this …
+const PERIOD: Duration = Duration::from_secs(120);
+/// … and takes no more than this share of one processor.
+const MOST_SHARE: f64 = 0.03;
+/// Where it cannot look, it tries again after this time.
+const AGAIN: Duration = Duration::from_secs(5);
+/// So often in a row it must look bad before that is said: a hand before an eye is no turned eye.
+const BAD_IN_A_ROW: u32 = 2;
+
+/// When it looks next, and what it has told.
+#[derive(Clone, Debug, Default)]
+pub(super) struct ByItself {
+    /// Of which source, counted.
+    opened: u64,
+    /// `None`: no pair has come yet.
+    due: Option<Instant>,
+    /// It could not look: it tries again from then on.
+    put_off: Option<Instant>,
+    /// The proposal that was looked at.
+    looked_at: Option<Of>,
+    /// How often in a row the calibration looked bad.
+    bad: u32,
+    /// Which one was said to be bad.
+    told: Option<Arc<StereoCalibration>>,
+}
+
+impl EyesWorkflow {
+    /// Whether it may be time to look, without being asked.
+    pub fn may_look(&self, now: Instant) -> bool {
+        let health = &self.health;
+        self.in_use().is_some()
+            && health.gathering.is_none()
+            && health.judging.is_none()
+            && health.by_itself.put_off.is_none_or(|until| now >= until)
+            && health.by_itself.due.is_none_or(|due| now >= due || self.has_unseen_proposal())
+    }
+
+    /// A pair has come, and nothing is being judged.
+    pub(super) fn look_by_itself(
+        &mut self,
+        frame: &StereoFrame,
+        around: &EyesAround,
+        context: &mut Context<'_>,
+    ) {
+        let now = context.time.instant;
+        let by_itself = &mut self.health.by_itself;
+        if by_itself.due.is_none() || by_itself.opened != around.source.opened {
+            (by_itself.opened, by_itself.due) = (around.source.opened, Some(now + SETTLED));
+            by_itself.bad = 0;
+        }
+        if !self.may_look(now) {
+            return;
+        }
+        let Some(of) = self.to_be_judged() else { return };
+        let sees_now = is_live(&around.source) && goes_on(&around.source);
+        let is_proposed = self.has_unseen_proposal();
+        // Watching drift says itself when the eyes turn, with the same share; and what a law of time takes off, the
+        // calibration alone does not know.
+        let is_needed = is_proposed || !(around.is_watched || around.is_corrected);
+        if !sees_now || around.arm_moves || !is_needed {
+            return self.put_off(now);
+        }
+        self.health.by_itself.looked_at = of.proposed.is_some().then_some(of);
+        self.gather_by_itself(frame, around, now);
+    }
+
+    /// Whether a proposal waits that nobody has looked at beside the calibration in use.
+    fn has_unseen_proposal(&self) -> bool {
+        let Some(of) = self.proposal.as_ref().and_then(|_| self.to_be_judged()) else { return false };
+        let is_seen = self.health.by_itself.looked_at.as_ref().is_some_and(|seen| seen.is(&of));
+        of.proposed.is_some() && !is_seen && !self.has_judged(&of)
+    }
+
+    /// It cannot look now; what was gathered is let go.
+    pub(super) fn put_off(&mut self, now: Instant) {
+        if self.health.gathering.take().is_some() {
+            self.health.by_itself.looked_at = None;
+        }
+        self.health.by_itself.put_off = Some(now + AGAIN);
+    }
+
+    /// Processors were busy with it for so long: it rests until that is a small share of the time.
+    pub(super) fn rest(&mut self, busy: Duration, now: Instant) {
+        let by_itself = &mut self.health.by_itself;
+        by_itself.due = Some(now + PERIOD.max(busy.div_f64(MOST_SHARE)));
+    }
+
+    /// Says once that the calibration in use does not hold any more, and that it does again.
+    pub(super) fn tell_of_health(
+        &mut self,
+        of: &Of,
+        health: &EyesHealth,
+        ask: Ask,
+        context: &mut Context<'_>,
+    ) {
+        let by_itself = &mut self.health.by_itself;
+        let is_told = by_itself.told.as_ref().is_some_and(|told| Arc::ptr_eq(told, &of.in_use));
+        if health.in_use.is_good {
+            by_itself.bad = 0;
+            if is_told {
+                by_itself.told = None;
+                context.notices.add(NoticeLevel::Info, "The calibration of the eyes holds again.");
+            }
+            return;
+        }
+        by_itself.bad += 1;
+        if !ask.by_itself {
+            // Who asked reads it where he has asked.
+            by_itself.told = Some(of.in_use.clone());
+        } else if by_itself.bad >= BAD_IN_A_ROW && !is_told {
+            by_itself.told = Some(of.in_use.clone());
+            context.notices.add(NoticeLevel::Warning, does_not_hold(health));
+        }
+    }
+}
+
+fn does_not_hold(health: &EyesHealth) -> String {
+    let [near_cm, middle_cm, far_cm] = health.in_use.off_m.map(|off_m| 100.0 * off_m);
+    format!(
+        "The calibration of the eyes does not hold any more: places are off by {near_cm:.1} cm near, {middle_cm:.1} cm in \
+         the middle and {far_cm:.1} cm far. Calibrate the eyes again; the screen Drift says what has turned."
+    )
+}
