@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
-use crossbeam_channel::{Receiver, Sender, TrySendError};
+use crossbeam_channel::{Receiver, Sender};
 use image::RgbImage;
 use jiff::Timestamp;
 use plumbline_hardware::{QUALITY, encode_jpeg};
@@ -109,8 +109,8 @@ impl Recorder {
 
     /// Hands something over; never waits. What does not fit is counted.
     pub fn put(&self, item: Item) {
-        let sent = self.items.as_ref().map(|items| items.try_send(item));
-        if let Some(Err(TrySendError::Full(_) | TrySendError::Disconnected(_))) = sent {
+        let Some(items) = &self.items else { return };
+        if items.try_send(item).is_err() {
             self.told.dropped.fetch_add(1, Ordering::Relaxed);
         }
     }
