@@ -226,6 +226,28 @@ fn unknown_parts_in_a_scenario_are_named() {
     }
 }
 
+/// Slack between gears is no motor: what stands comes to rest.
+#[test]
+fn an_arm_with_slack_stands_still() {
+    for name in ["lab", "wide-101"] {
+        let scenario = Scenario::named_or_file(name).expect("a robot");
+        let mut world = World::new(rig(), &scenario, 1).expect("a world");
+        let palm = world.rig().description.find_link("right_palm_center").expect("a tip");
+        world.send(&world.rig().home(), Some(1.0));
+        world.run(4.0);
+        let places: Vec<Vector3<f64>> = (0..250)
+            .map(|_| {
+                world.step();
+                world.refresh();
+                world.true_link(palm).expect("there").translation.vector
+            })
+            .collect();
+        let sways_mm = 1e3 * places.iter().map(|place| (place - places[0]).norm()).fold(0.0, f64::max);
+        println!("{name}: the palm sways by {sways_mm:.4} mm in half a second");
+        assert!(sways_mm < 0.03, "{name}: {sways_mm} mm");
+    }
+}
+
 #[test]
 fn pace() {
     let mut world = world("lab");
