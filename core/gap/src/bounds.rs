@@ -72,11 +72,14 @@ impl Shown {
 /// the noise is a guess of how well laws of time fit.
 fn is_floor_known(found: &Found, used: &Measurements) -> bool {
     let is_watched = used.rows.iter().any(|row| row.stand.is_some());
-    match found.floor.source {
+    is_told(found.floor.source, is_watched, found.doubt.noise_scale)
+}
+
+/// The same by where the floor comes from, whether things were watched, and how many times as large it was found.
+fn is_told(source: FloorSource, is_watched: bool, noise_scale: f64) -> bool {
+    match source {
         FloorSource::Repeats => true,
-        FloorSource::Instrument | FloorSource::Neighbors => {
-            !is_watched && found.doubt.noise_scale < LARGEST_NOISE
-        }
+        FloorSource::Instrument | FloorSource::Neighbors => !is_watched && noise_scale < LARGEST_NOISE,
         FloorSource::Fitted => false,
     }
 }
@@ -185,6 +188,18 @@ mod tests {
             covariates: vec![],
             telling: vec![],
         }
+    }
+
+    #[test]
+    fn only_a_floor_that_something_tells_convicts() {
+        let most = LARGEST_NOISE;
+        assert!(is_told(FloorSource::Repeats, true, 10.0), "repeats were repeated");
+        for source in [FloorSource::Instrument, FloorSource::Neighbors] {
+            assert!(is_told(source, false, 0.9 * most));
+            assert!(!is_told(source, false, most), "the noise may be larger than was tried");
+            assert!(!is_told(source, true, 1.0), "a part of it is a guess");
+        }
+        assert!(!is_told(FloorSource::Fitted, false, 1.0), "it is whatever was left");
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Small statistics that several steps share.
 
 use statrs::function::beta::checked_beta_reg;
+use statrs::function::erf::erfc;
 
 /// Median; `None` of nothing.
 pub fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
@@ -16,6 +17,18 @@ pub fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
         return Some(0.5 * (lower + at));
     }
     Some(at)
+}
+
+/// ln 2Φ(mean/sd): by how much the evidence of a normal parameter changes when it cannot be negative.
+pub fn ln_not_negative(mean: f64, variance: f64) -> f64 {
+    const FAR: f64 = -25.0;
+    let sigmas = mean / variance.max(f64::MIN_POSITIVE).sqrt();
+    if sigmas < FAR {
+        // The integral is nearly smaller than any number; its tail is the density over the distance.
+        -0.5 * sigmas * sigmas - (-sigmas * std::f64::consts::FRAC_PI_2.sqrt()).ln()
+    } else {
+        erfc(-sigmas / std::f64::consts::SQRT_2).ln()
+    }
 }
 
 /// Standard deviation about zero by the median of absolute values; right for normal noise, and not
@@ -79,5 +92,16 @@ mod tests {
         assert_eq!(median([3.0, 1.0, 2.0]), Some(2.0));
         assert_eq!(median([4.0, 1.0, 2.0, 3.0]), Some(2.5));
         assert_eq!(median([]), None);
+    }
+
+    #[test]
+    fn a_parameter_that_cannot_be_negative_gains_at_most_a_factor_of_two_and_loses_with_the_square() {
+        assert!(ln_not_negative(0.0, 4.0).abs() < 1e-12);
+        assert!((ln_not_negative(12.0, 4.0) - 2_f64.ln()).abs() < 1e-6);
+        assert!((ln_not_negative(-4.0, 4.0) - (2.0 * 0.022_750_131_9_f64).ln()).abs() < 1e-6);
+        // No step where the formula changes, and no infinity.
+        let [near, far] = [-24.999, -25.001].map(|sigmas| ln_not_negative(sigmas, 1.0));
+        assert!(near > far && near - far < 0.1, "{near} {far}");
+        assert!(ln_not_negative(-1e6, 1.0).is_finite());
     }
 }

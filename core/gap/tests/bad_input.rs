@@ -306,3 +306,20 @@ fn a_joint_that_turns_the_other_way_is_refused_by_name() {
         assert!(looked_at(&touches(&one_by_one(60), &hidden, 6)).is_ok(), "nothing is wrong with it");
     }
 }
+
+/// Along a few lines of touches in one posture a ratio that is a little off and a stretched screen look like a joint
+/// that turns half as far.
+#[test]
+fn usual_errors_are_no_joint_that_turns_half_as_far() {
+    let some = touches(&one_by_one(60), &[], 1);
+    let hidden = [
+        common::present(&some, "joint-scale", "r_shoulder_z", &[0.05]),
+        common::present(&some, "screen-scale", "screen", &[0.04, -0.03]),
+    ];
+    for seed in 1..4 {
+        let measurements = touches(&one_by_one(60), &hidden, seed);
+        if let Err(error) = looked_at(&measurements) {
+            panic!("{error}");
+        }
+    }
+}

@@ -89,10 +89,19 @@ fn print(finding: &Finding) {
 fn touches_of_the_real_arm() {
     let Some(measurements) = session("nico-touch/touch-245") else { return };
     let finding = found(&measurements);
-    assert_eq!(finding.verdict, Verdict::Named);
+    // Skewed axes and wrong zeros are alike in these touches.
+    assert_eq!(finding.verdict, Verdict::Class);
     assert!(finding.comparison.is_gap);
     assert!(finding.shown.before > 4e-3 && finding.shown.before < 7e-3, "{}", finding.shown.before);
-    assert!(finding.shown.after < finding.shown.before);
+    assert!(finding.shown.after <= 3.8e-3, "{}", finding.shown.after);
+    // All encoders were read early, and that of the arm's lift by another share.
+    let early: Vec<&str> = finding
+        .effects
+        .iter()
+        .filter(|effect| effect.id == "early-log")
+        .map(|effect| effect.site.as_str())
+        .collect();
+    assert!(early.contains(&"") && early.contains(&"r_arm_x"), "{early:?}");
 }
 
 #[test]

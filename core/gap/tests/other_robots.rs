@@ -255,3 +255,16 @@ fn a_marker_that_stands_turned_is_taken_as_mounted_anew() {
     assert!(!finding.mounts.is_empty());
     assert!(finding.effects.iter().all(|effect| effect.not_addable.is_none()), "{}", finding.sentence);
 }
+
+#[test]
+#[ignore = "a measurement of time"]
+fn time_of_many_poses_of_seven_joints() {
+    let made = seven_joints(1500, 1);
+    for show in [false, true] {
+        let begun = Instant::now();
+        let options = Options { show, advise: false, ..Options::default() };
+        let finding = find(&made, &options, &Unattended).expect("can be looked at");
+        println!("{:?}, held out: {show}, {:.1} s", finding.verdict, begun.elapsed().as_secs_f64());
+        assert_ne!(finding.verdict, Verdict::NoGap, "{}", finding.sentence);
+    }
+}

@@ -177,8 +177,8 @@ fn list(answer: &Answer, verdict: &Result<Verdict, String>) {
         }
         Err(why) => why.clone(),
     };
-    let outside = verdict.as_ref().map_or_else(|_| vec![], |verdict| outside(answer, verdict));
-    let outside = if outside.is_empty() { String::new() } else { format!(" OUTSIDE {}", outside.join(", ")) };
+    let outside = verdict.as_ref().map_or_else(|_| vec![], |verdict| sizes(answer, verdict));
+    let outside = if outside.is_empty() { String::new() } else { format!(" SIZES {}", outside.join(", ")) };
     println!(
         "{:03} {} {}{}: {} → {said}{outside}",
         answer.case,
@@ -189,8 +189,9 @@ fn list(answer: &Answer, verdict: &Result<Verdict, String>) {
     );
 }
 
-/// Parameters of rightly named effects whose interval does not hold the truth.
-fn outside(answer: &Answer, verdict: &Verdict) -> Vec<String> {
+/// How far parameters of rightly named effects are off, in standard deviations of their interval; what is outside of
+/// it with its numbers.
+fn sizes(answer: &Answer, verdict: &Verdict) -> Vec<String> {
     let mut outside = vec![];
     for hidden in &answer.hidden {
         let same =
@@ -199,8 +200,11 @@ fn outside(answer: &Answer, verdict: &Verdict) -> Vec<String> {
         for (name, truth) in &hidden.parameters {
             let number = |end: &str| found.parameters.get(name)?.get(end)?.as_f64();
             let (Some(low), Some(high)) = (number("low"), number("high")) else { continue };
+            let value = number("value").unwrap_or(f64::NAN);
+            let sd = (high - low) / (2.0 * 1.96);
+            outside.push(format!("{name} {:+.1}", (value - truth) / sd));
             if *truth < low || *truth > high {
-                outside.push(format!("{}.{name} {truth:.4} not in {low:.4} to {high:.4}", hidden.id));
+                outside.push(format!("OUTSIDE {}.{name} {truth:.4} not in {low:.4} to {high:.4}", hidden.id));
             }
         }
     }

@@ -86,14 +86,18 @@ fn hidden_effects_are_found_and_nothing_else() {
     let value = |share: &Share| share.value().expect("there were some");
     let null: usize = score.null_named.iter().map(|share| share.hits).sum();
     assert_eq!(null, 0, "a name where nothing is hidden");
-    // Few cases: what is asked here is less than what the table shows.
+    // Few cases: one of a kind may go wrong that the table does not show.
     let all = |shares: Vec<Share>| Share {
         hits: shares.iter().map(|share| share.hits).sum(),
         of: shares.iter().map(|share| share.of).sum(),
     };
     let singles = all(score.singles_visible.values().map(|naming| naming.class).collect());
-    assert!(value(&singles) >= 0.7, "single effects: {singles:?}");
+    assert!(value(&singles) >= 0.9, "single effects: {singles:?}");
     let several = all(score.several.values().map(|naming| naming.class).collect());
-    assert!(value(&several) >= 0.5, "pairs: {several:?}");
-    assert!(value(&score.nameless["rich"]) >= 0.25, "all were said to be in the library");
+    assert!(value(&several) >= 0.75, "pairs: {several:?}");
+    let nameless = score.nameless["rich"];
+    assert!(value(&nameless) >= 0.75, "not in the library: {nameless:?}");
+    assert_eq!(score.nameless_named.hits, 0, "a confident name of what is in no library");
+    assert!(value(&score.wrong_confident) <= 0.1, "confident and wrong: {:?}", score.wrong_confident);
+    assert!(value(&score.coverage) >= 0.85, "intervals: {:?}", score.coverage);
 }

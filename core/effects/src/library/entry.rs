@@ -139,6 +139,8 @@ pub(crate) enum Is {
     OfLoad,
     /// A robot's description can hold it, as the place of a joint or of the tip.
     Origin,
+    /// Nothing has less than none of it: what gives way goes with the load, a pad is round to the outside.
+    OneSided,
 }
 
 /// An effect at one joint in a situation.

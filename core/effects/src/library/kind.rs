@@ -179,6 +179,11 @@ impl Kind {
         self.entry().is(Is::OfLoad)
     }
 
+    /// Whether it is never less than nothing: parts give way with a load, and not against it.
+    pub fn is_one_sided(self) -> bool {
+        self.entry().is(Is::OneSided)
+    }
+
     /// Whether a plan of touches is scored by it: it does not depend on time, speed or logging.
     pub(super) fn is_planned(self) -> bool {
         self.entry().is(Is::Planned)

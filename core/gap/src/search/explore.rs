@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use plumbline_model::JobContext;
 
 use super::field::{Field, log_sum};
-use super::library::Block;
+use super::library::{Block, together};
 use crate::error::GapError;
 
 /// Sets whose odds against the best one are worse than this are forgotten (Occam's window).
@@ -50,7 +50,7 @@ pub(super) struct Space<'a> {
 
 impl Space<'_> {
     fn prior(&self, set: &[usize]) -> f64 {
-        set.iter().map(|&block| self.blocks[block].log_prior).sum()
+        set.iter().map(|&block| self.blocks[block].log_prior).sum::<f64>() + together(set, self.blocks)
     }
 
     /// Scores of a set by field.
@@ -150,7 +150,8 @@ impl Space<'_> {
             let score = log_sum(given.iter().map(|given| given.log_evidence + given.adds(own)));
             let mut set = base.to_vec();
             set.insert(set.partition_point(|&other| other < block), block);
-            visited.insert(set, prior + own.log_prior + score);
+            let prior = self.prior(&set);
+            visited.insert(set, prior + score);
         }
         Ok(())
     }

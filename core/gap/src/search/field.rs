@@ -4,14 +4,18 @@
 //! under a narrow one ("dirt"), and an own amount of every cell. What is left for a set S of
 //! blocks with standard-normal parameters is, up to a constant of the variant,
 //!   log p(y|S) = ½ bᵀ(1 + A)⁻¹b − ½ log det(1 + A)
-//! with A and b of the columns of S.
+//! with A and b of the columns of S. What cannot be negative has half of that normal density, twice as high: its
+//! evidence has 2Φ of mean over standard deviation more, and what fits with the wrong sign only is ruled out.
 
 use std::sync::Arc;
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
+use plumbline_effects::Kind;
+
 use super::library::Block;
 use super::linear::Sums;
+use crate::statistics::ln_not_negative;
 
 /// Dirt is at most this share of a usual size.
 const LARGEST_DIRT: f64 = 0.1;
@@ -25,9 +29,10 @@ pub(super) struct Variant {
     pub cell: f64,
     /// Small amounts of everything, together this large, in units of the floor.
     pub dirt: f64,
-    /// How large an effect of these sessions is, in units of the floor; none is larger beforehand
-    /// than its usual size.
+    /// How large an effect of these sessions is, in units of the floor …
     pub size: f64,
+    /// … and in usual sizes at most: where effects are large, some are larger than usual.
+    pub most: f64,
     /// Logarithm of how probable this is beforehand.
     pub log_prior: f64,
 }
@@ -39,6 +44,8 @@ pub(super) struct Field {
     shared: Arc<Dirtied>,
     /// Standard deviation of each column's parameter beforehand, in usual sizes.
     scale: Vec<f64>,
+    /// Columns of parameters that are never negative.
+    one_sided: Vec<bool>,
     /// Evidence of the empty set and the variant's prior.
     constant: f64,
 }
@@ -105,20 +112,21 @@ impl Framed {
     }
 
     /// With noise and dirt of a variant taken in. `sizes`: root mean square per column, of plain
-    /// weights; `dirty`: columns that dirt is made of.
+    /// weights; `dirty`: columns that dirt is made of; `always`: what is there at least, usual sizes.
     pub fn dirtied(
         &self,
         variant: Variant,
         blocks: &[Block],
         sizes: &[f64],
         dirty: &[bool],
+        always: &[f64],
     ) -> Option<Dirtied> {
         let k = self.a.ncols();
         let noise = 1.0 / (variant.noise * variant.noise);
         let kinds = dirty.iter().filter(|dirty| **dirty).count().max(1) as f64;
         let mut narrow = DVector::zeros(k);
         for c in blocks.iter().flat_map(Block::columns).filter(|&c| dirty[c] && sizes[c] > 1e-9) {
-            narrow[c] = (variant.dirt / kinds.sqrt() / sizes[c]).min(LARGEST_DIRT);
+            narrow[c] = (variant.dirt / kinds.sqrt() / sizes[c]).min(LARGEST_DIRT).max(always[c]);
         }
         let small: Vec<usize> = (0..k).filter(|&c| narrow[c] > 0.0).collect();
         let mut log_evidence = -0.5 * (noise * self.square + self.logs + self.gauge * noise.ln())
@@ -147,14 +155,18 @@ impl Field {
     /// With the sizes of a variant.
     pub fn new(variant: Variant, shared: Arc<Dirtied>, blocks: &[Block], sizes: &[f64]) -> Self {
         let mut scale = vec![1.0; sizes.len()];
+        let mut one_sided = vec![false; sizes.len()];
         for block in blocks {
             for c in block.columns() {
+                one_sided[c] = block.is_one_sided;
                 let reach = sizes[c] * (block.len as f64).sqrt();
-                scale[c] = 1.0 / (1.0 + (reach / variant.size).powi(2)).sqrt();
+                // Nobody logs an angle more than all of the way too early.
+                let most = if block.kind == Some(Kind::EarlyLog) { 1.0 } else { variant.most };
+                scale[c] = 1.0 / (most.powi(-2) + (reach / variant.size).powi(2)).sqrt();
             }
         }
         let constant = shared.log_evidence + variant.log_prior;
-        Self { variant, shared, scale, constant }
+        Self { variant, shared, scale, one_sided, constant }
     }
 
     fn a(&self, r: usize, c: usize) -> f64 {
@@ -186,6 +198,8 @@ pub(super) struct Given<'a> {
     field: &'a Field,
     columns: Vec<usize>,
     solved: Option<Solved>,
+    /// Those of its parameters that are never negative: place in the set, mean, variance.
+    one_sided: Vec<(usize, f64, f64)>,
     /// Evidence of the set.
     pub log_evidence: f64,
 }
@@ -195,7 +209,13 @@ impl Field {
     pub fn given<'a>(&'a self, set: &[usize], blocks: &[Block]) -> Given<'a> {
         let columns: Vec<usize> = set.iter().flat_map(|&block| blocks[block].columns()).collect();
         if columns.is_empty() {
-            return Given { field: self, columns, solved: None, log_evidence: self.constant };
+            return Given {
+                field: self,
+                columns,
+                solved: None,
+                one_sided: vec![],
+                log_evidence: self.constant,
+            };
         }
         let mut own = DMatrix::from_fn(columns.len(), columns.len(), |r, c| self.a(columns[r], columns[c]));
         own.fill_diagonal_add(1.0);
@@ -205,10 +225,24 @@ impl Field {
                 let means = cholesky.solve(&b);
                 let rows = DMatrix::from_fn(columns.len(), self.scale.len(), |r, c| self.a(columns[r], c));
                 let solved = cholesky.solve(&rows);
-                let log_evidence = self.constant + 0.5 * (b.dot(&means) - cholesky.ln_determinant());
-                Given { field: self, columns, solved: Some((cholesky, solved, means)), log_evidence }
+                let mut one_sided: Vec<(usize, f64, f64)> = vec![];
+                if columns.iter().any(|&c| self.one_sided[c]) {
+                    let variances = cholesky.inverse().diagonal();
+                    let places = (0..columns.len()).filter(|&k| self.one_sided[columns[k]]);
+                    one_sided.extend(places.map(|k| (k, means[k], variances[k])));
+                }
+                let halves: f64 = one_sided.iter().map(|(_, mean, var)| ln_not_negative(*mean, *var)).sum();
+                let log_evidence = self.constant + 0.5 * (b.dot(&means) - cholesky.ln_determinant()) + halves;
+                let solved = Some((cholesky, solved, means));
+                Given { field: self, columns, solved, one_sided, log_evidence }
             }
-            None => Given { field: self, columns, solved: None, log_evidence: f64::NEG_INFINITY },
+            None => Given {
+                field: self,
+                columns,
+                solved: None,
+                one_sided: vec![],
+                log_evidence: f64::NEG_INFINITY,
+            },
         }
     }
 }
@@ -219,14 +253,45 @@ impl Given<'_> {
         if block.len == 1 {
             let (a, b) = (self.rest(block.start, block.start), self.rest_b(block.start));
             let one = (1.0 + a).max(1e-12);
-            return 0.5 * (b * b / one - one.ln());
+            let (mean, variance) = (b / one, 1.0 / one);
+            let own = if block.is_one_sided { ln_not_negative(mean, variance) } else { 0.0 };
+            let moved = |k: usize| {
+                let along = self.along(k, block.start);
+                (along * mean, along * along * variance)
+            };
+            return 0.5 * (b * b / one - one.ln()) + own + self.halves_with(moved);
         }
         let at = block.start;
         let mut own = DMatrix::from_fn(block.len, block.len, |r, c| self.rest(at + r, at + c));
         own.fill_diagonal_add(1.0);
         let b = DVector::from_fn(block.len, |r, _| self.rest_b(at + r));
-        Cholesky::new(own)
-            .map_or(f64::NEG_INFINITY, |own| 0.5 * (b.dot(&own.solve(&b)) - own.ln_determinant()))
+        let Some(own) = Cholesky::new(own) else { return f64::NEG_INFINITY };
+        let means = own.solve(&b);
+        let log = 0.5 * (b.dot(&means) - own.ln_determinant());
+        if self.one_sided.is_empty() {
+            return log;
+        }
+        let inverse = own.inverse();
+        let moved = |k: usize| {
+            let along = DVector::from_fn(block.len, |c, _| self.along(k, at + c));
+            (along.dot(&means), along.dot(&(&inverse * &along)))
+        };
+        log + self.halves_with(moved)
+    }
+
+    /// How a parameter of the set follows one of another column.
+    fn along(&self, k: usize, column: usize) -> f64 {
+        self.solved.as_ref().map_or(0.0, |(_, solved, _)| solved[(k, column)])
+    }
+
+    /// How the evidence of the set's one-sided parameters changes when another block moves their means back and
+    /// widens their variances by so much.
+    fn halves_with(&self, moved: impl Fn(usize) -> (f64, f64)) -> f64 {
+        let change = |&(k, mean, variance): &(usize, f64, f64)| {
+            let (back, wider) = moved(k);
+            ln_not_negative(mean - back, variance + wider) - ln_not_negative(mean, variance)
+        };
+        self.one_sided.iter().map(change).sum()
     }
 
     /// A of two columns when the set is there already.
@@ -273,6 +338,18 @@ impl Given<'_> {
         }
         (means.component_mul(&scale), covariance)
     }
+
+    /// Covariance (usual sizes) were each parameter as large as usual beforehand, or as the variant has it where that
+    /// is more. What effects of these sessions do to the rows says nothing of a direction in which two parameters
+    /// do next to nothing together: there the interval is as wide as what is usual.
+    pub fn wide(&self) -> DMatrix<f64> {
+        let count = self.columns.len();
+        let sd = self.field.variant.most.max(1.0);
+        let a = &self.field.shared.a;
+        let mut normal = DMatrix::from_fn(count, count, |r, c| a[(self.columns[r], self.columns[c])]);
+        normal.fill_diagonal_add(sd.powi(-2));
+        Cholesky::new(normal).map_or_else(|| DMatrix::identity(count, count) * (sd * sd), |n| n.inverse())
+    }
 }
 
 /// log Σ exp.
@@ -282,4 +359,62 @@ pub(super) fn log_sum(values: impl Iterator<Item = f64> + Clone) -> f64 {
         return most;
     }
     most + values.map(|value| (value - most).exp()).sum::<f64>().ln()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn block(start: usize, is_one_sided: bool) -> Block {
+        Block {
+            start,
+            len: 1,
+            kind: None,
+            is_family: false,
+            is_of_all: false,
+            is_one_sided,
+            grows_sideways: false,
+            name: start,
+            log_prior: 0.0,
+        }
+    }
+
+    /// Three columns that look partly alike; the first fits with this pull.
+    fn field(pull: f64, one_sided: [bool; 3]) -> (Field, Vec<Block>) {
+        let a = DMatrix::from_row_slice(3, 3, &[9.0, 4.0, 2.0, 4.0, 16.0, -3.0, 2.0, -3.0, 4.0]);
+        let b = DVector::from_vec(vec![pull, 5.0, -2.0]);
+        let shared = Arc::new(Dirtied { a, b, log_evidence: 0.0, square: 100.0 });
+        let blocks: Vec<Block> = (0..3).map(|k| block(k, one_sided[k])).collect();
+        let variant = Variant { noise: 1.0, cell: 0.0, dirt: 0.0, size: 3.0, most: 1.0, log_prior: 0.0 };
+        (Field::new(variant, shared, &blocks, &[3.0, 4.0, 2.0]), blocks)
+    }
+
+    #[test]
+    fn a_block_adds_the_same_evidence_whichever_way_its_set_is_reached() {
+        for one_sided in [[false; 3], [true, false, true], [true; 3]] {
+            for pull in [-20.0, 3.0, 20.0] {
+                let (field, blocks) = field(pull, one_sided);
+                for (base, more) in [(vec![0, 1], 2), (vec![1, 2], 0), (vec![0], 1)] {
+                    let mut all = base.clone();
+                    all.push(more);
+                    all.sort_unstable();
+                    let given = field.given(&base, &blocks);
+                    let whole = field.given(&all, &blocks).log_evidence;
+                    let step = given.log_evidence + given.adds(&blocks[more]);
+                    assert!((whole - step).abs() < 1e-8, "{one_sided:?} {pull} {base:?}: {whole} {step}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_gives_way_against_its_load_is_no_explanation() {
+        let evidence = |pull: f64, sided: bool| {
+            let (field, blocks) = field(pull, [sided, false, false]);
+            field.given(&[0], &blocks).log_evidence
+        };
+        assert!(evidence(-20.0, false) > 1.0, "it would explain something");
+        assert!(evidence(-20.0, true) < 0.0, "{}", evidence(-20.0, true));
+        assert!((evidence(20.0, true) - evidence(20.0, false) - 2_f64.ln()).abs() < 1e-3);
+    }
 }

@@ -91,6 +91,7 @@ impl Finish<'_> {
             (own.assumed, doubt, own.sds)
         };
         self.widen_by_masses(&mut named, &assumed, &fitted.weights, &sds, context)?;
+        evidence.widen_by_shapes(&mut named);
         let undetermined = undetermined(self.measurements, &assumed.effects, &doubt.covariance, &sds);
         let hypotheses = self.hypotheses(&assumed, context)?;
         let after = self.misses(&assumed, context)?;

@@ -112,6 +112,7 @@ pub(super) fn rivals(
             kind: None,
             is_family: false,
             is_of_all: false,
+            is_one_sided: false,
             grows_sideways: false,
             name: library.names.len(),
             log_prior: (UNKNOWN / count).ln(),

@@ -18,8 +18,10 @@ pub(super) struct Block {
     pub kind: Option<Kind>,
     /// Whether it stands for every joint or link at once.
     pub is_family: bool,
-    /// Whether every encoder was logged early by it: one joint early beside all of them is no other thing.
+    /// Whether every encoder was logged early by it, by one share of what was left to go.
     pub is_of_all: bool,
+    /// Whether its value is never negative.
+    pub is_one_sided: bool,
     /// Whether it turns the right eye sideways or shifts its image in the course of time: such act alike, and two
     /// of them would cancel each other.
     pub grows_sideways: bool,
@@ -36,7 +38,7 @@ impl Block {
         let of_one_kind = self.kind.is_some() && self.kind == other.kind;
         self.name == other.name
             || self.grows_sideways && other.grows_sideways
-            || of_one_kind && (self.is_family != other.is_family || self.is_of_all != other.is_of_all)
+            || of_one_kind && self.is_family != other.is_family
     }
 
     /// Its columns.
@@ -52,6 +54,18 @@ const EVERY_SITE: f64 = 0.05;
 /// encoders are read in one pass. What lags behind its command by the same amount in every pose, and the finger
 /// does not, is the play of an encoder's drive.
 const ONE_LOGGED_EARLY: f64 = 0.002;
+
+/// Beside all of them it is usual: a joint that carries more settles later, so more of its way was left.
+const ONE_LATER_THAN_ALL: f64 = 0.3;
+
+/// How much more probable beforehand a set is for what goes together in it, log.
+pub(super) fn together(set: &[usize], blocks: &[Block]) -> f64 {
+    if !set.iter().any(|&block| blocks[block].is_of_all) {
+        return 0.0;
+    }
+    let later = set.iter().filter(|&&block| blocks[block].kind == Some(Kind::EarlyLog)).count() - 1;
+    later as f64 * (ONE_LATER_THAN_ALL / ONE_LOGGED_EARLY).ln()
+}
 
 /// The candidates of a search.
 #[derive(Clone, Debug)]
@@ -94,8 +108,18 @@ impl Library {
             let is_sideways = matches!(effect.kind, Kind::EyeYaw | Kind::ImageShift);
             let grows_sideways = effect.growth().is_some() && is_sideways;
             let is_of_all = effect.kind == Kind::EarlyLog && effect.site.is_empty();
-            let log_prior = 0.0;
-            blocks.push(Block { start, len, kind, is_family, is_of_all, grows_sideways, name, log_prior });
+            let is_one_sided = len == 1 && (effect.kind.is_one_sided() || is_of_all);
+            blocks.push(Block {
+                start,
+                len,
+                kind,
+                is_family,
+                is_of_all,
+                is_one_sided,
+                grows_sideways,
+                name,
+                log_prior: 0.0,
+            });
             start += len;
         }
         let mut shapes = vec![0_usize; names.len()];
@@ -135,5 +159,23 @@ mod tests {
         let (zeros, zero) = (place(Kind::JointZero, true), place(Kind::JointZero, false));
         assert!(zeros.excludes(zero) && zero.excludes(zeros));
         assert!(!zeros.excludes(place(Kind::AxisSkew, false)) && !zero.excludes(place(Kind::AxisSkew, true)));
+    }
+
+    #[test]
+    fn one_joint_logged_early_is_rare_alone_and_usual_beside_all() {
+        let rig = Rig::built_in("nico").expect("comes along");
+        let arm = Arm::of_rig(&rig, "right_index_tip").expect("an arm");
+        let library = Library::with(Effect::sites(Kind::EarlyLog, Some(&arm), None));
+        let place = |of_all: bool| {
+            library.blocks.iter().position(|block| block.is_of_all == of_all).expect("in the library")
+        };
+        let (all, one) = (place(true), place(false));
+        assert!(!library.blocks[all].excludes(&library.blocks[one]));
+        assert!(library.blocks[all].is_one_sided && !library.blocks[one].is_one_sided);
+        assert!(together(&[one], &library.blocks).abs() < 1e-12);
+        assert!(together(&[all], &library.blocks).abs() < 1e-12);
+        let beside = library.blocks[one].log_prior + together(&[all, one], &library.blocks);
+        assert!(beside > library.blocks[one].log_prior + 4.0, "{beside}");
+        assert!(beside < library.blocks[all].log_prior);
     }
 }

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use nalgebra::DVector;
-use plumbline_effects::Assumed;
 use plumbline_effects::measurements::Measurements;
+use plumbline_effects::{Assumed, Kind};
 use plumbline_model::JobContext;
 
 use super::explore::{Explored, Space};
@@ -28,6 +28,8 @@ const STANDS_OUT: f64 = 2.0;
 const MOST_SPLIT: usize = 3;
 /// So many of the best sets are looked around again.
 const KEPT: usize = 2;
+/// No fingertip is a point: its pad is round by so much or less, m.
+const PAD_SD_M: f64 = 0.3e-3;
 /// Divides log odds: see the README's section on calibration.
 pub(super) const TEMPERATURE: f64 = 2.0;
 
@@ -113,25 +115,30 @@ impl Look {
                 packed[block].columns().for_each(|c| dirty[c] = true);
             }
         }
+        let mut always = vec![0.0; kept.len()];
+        for &block in allowed.iter().filter(|&&block| blocks[block].kind == Some(Kind::FingerRoll)) {
+            let parameters = library.effects[block].parameters();
+            packed[block].columns().zip(parameters).for_each(|(c, pad)| always[c] = PAD_SD_M / pad.typical);
+        }
         let own_sizes: Vec<f64> = kept.iter().map(|&c| sizes[c]).collect();
         let own_present = DVector::from_iterator(kept.len(), kept.iter().map(|&c| present[c]));
         let small = sums.only(&kept);
         let mut fields: Vec<Field> = vec![];
         let mut framed: Option<(f64, Framed)> = None;
         let mut shared: Option<(Variant, Arc<Dirtied>)> = None;
-        for variant in variants(floor.source) {
-            let like = |known: &Variant| {
-                Variant { size: variant.size, log_prior: variant.log_prior, ..*known } == variant
-            };
+        let gap = (plain.square / sums.total - 1.0).max(0.0).sqrt();
+        for variant in variants(floor.source, gap) {
+            let Variant { size, most, log_prior, .. } = variant;
+            let like = |known: &Variant| Variant { size, most, log_prior, ..*known } == variant;
             if !shared.as_ref().is_some_and(|(known, _)| like(known)) {
                 context.checkpoint()?;
                 if !framed.as_ref().is_some_and(|(cell, _)| *cell == variant.cell) {
                     framed = Framed::of(&small, variant.cell * variant.cell, &own_present)
                         .map(|one| (variant.cell, one));
                 }
-                let dirtied = framed
-                    .as_ref()
-                    .and_then(|(_, framed)| framed.dirtied(variant, &of_allowed, &own_sizes, &dirty));
+                let dirtied = framed.as_ref().and_then(|(_, framed)| {
+                    framed.dirtied(variant, &of_allowed, &own_sizes, &dirty, &always)
+                });
                 shared = dirtied.map(|dirtied| (variant, Arc::new(dirtied)));
             }
             if let Some((_, shared)) = &shared {

@@ -5,6 +5,7 @@
 //! - [`explore`]: the search through sets;
 //! - [`free`]: rivals that are in no library;
 //! - [`refit`]: the fit through the forward model;
+//! - [`sizes`]: how far sizes may be off by shapes and companions;
 //! - [`naming`], [`knowledge`]: from sets with probabilities to names, classes, words.
 //!
 //! The method with its assumptions is described in the package's README.
@@ -20,6 +21,7 @@ mod look;
 mod masses;
 mod naming;
 mod refit;
+mod sizes;
 #[cfg(test)]
 mod tests;
 mod undetermined;

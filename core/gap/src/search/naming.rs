@@ -1,11 +1,11 @@
 //! From sets with probabilities to names, classes and a verdict.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 use plumbline_effects::{Effect, Kind};
 
 use super::explore::{Explored, Model};
 use super::field::log_sum;
-use super::library::Library;
+use super::library::{Library, together};
 use super::look::Look;
 use super::variants::UNKNOWN_CELL;
 use crate::compare::f_tail;
@@ -47,7 +47,10 @@ const NO_DIRT: f64 = 0.4;
 /// Cells off by this, dirt, are no lack of fit.
 const TOLERATED_CELL: f64 = 0.2;
 
-/// How probable play is that may be what the formula of a drag leaves.
+/// Said of a joint beside all of them: its share is less or more than theirs by what is told.
+const OTHERWISE_THAN_ALL: &str = ", by another share than the other joints (more, or with a minus less)";
+
+/// How probable play, or sag of all joints, is that may be what the formula of a drag or an early log leaves.
 const PLAY_OR_DRAG: f64 = 0.5;
 
 /// What the sets say together.
@@ -125,6 +128,10 @@ impl Evidence<'_> {
             }
             let mut effect = self.effect(&top, block, own, covariance, size, &names);
             if effect.class_probability >= NAMED_FROM {
+                let beside_all = |&other: &usize| other != block && self.look.blocks[other].is_of_all;
+                if effect.id == Kind::EarlyLog.id() && top.iter().any(beside_all) {
+                    effect.title.push_str(OTHERWISE_THAN_ALL);
+                }
                 if self.is_left_of_a_drag(&top, &sizes, place) {
                     effect.probability *= PLAY_OR_DRAG;
                     effect.class_probability *= PLAY_OR_DRAG;
@@ -159,21 +166,23 @@ impl Evidence<'_> {
     /// Whether one name stands for its class. Where every joint may be wrong and one of them as well, the most probable is
     /// not one name: which joint it is stays open.
     fn has_one_name(&self, block: usize, effect: &NamedEffect) -> bool {
-        let is_member = |member: &ClassMember| member.id == effect.id && member.site != effect.site;
         let is_family = self.library.effects[block].is_of_every_site();
-        let is_open_family = is_family && effect.class.iter().any(is_member);
-        effect.class.len() == 1 || effect.probability >= ONE_NAME && !is_open_family
+        stands_for_its_class(&effect.class, effect.probability, is_family)
     }
 
     /// Whether it is play beside a finger that drags, or angles that were read early, and smaller. How far those
     /// go depends on speeds that no log holds, so what a formula leaves of them goes with the direction of
-    /// motion as well, and cannot be told from play.
+    /// motion as well, and cannot be told from play. Or whether all joints give way alike beside angles that were read
+    /// early: a servo that gives way under load stays behind its command, which is no way that was left to go.
     fn is_left_of_a_drag(&self, set: &[usize], sizes: &[f64], place: usize) -> bool {
         let kind = |place: usize| self.look.blocks[set[place]].kind;
         let goes_with_speed = |other: &usize| {
             matches!(kind(*other), Some(Kind::TouchDrag | Kind::EarlyLog)) && sizes[*other] >= sizes[place]
         };
-        kind(place) == Some(Kind::Backlash) && (0..set.len()).any(|other| goes_with_speed(&other))
+        let effect = &self.library.effects[set[place]];
+        let is_early = |&block: &usize| self.look.blocks[block].is_of_all;
+        let stays = effect.kind == Kind::JointSag && effect.site.is_empty() && set.iter().any(is_early);
+        stays || kind(place) == Some(Kind::Backlash) && (0..set.len()).any(|other| goes_with_speed(&other))
     }
 
     /// Probability by noise alone of what frames leave.
@@ -196,7 +205,7 @@ impl Evidence<'_> {
         self.values(&model.set).get(place).map_or(0.0, |(own, _)| self.look.does(model.set[place], own))
     }
 
-    fn of_library(&self, model: &Model) -> Vec<usize> {
+    pub(super) fn of_library(&self, model: &Model) -> Vec<usize> {
         model.set.iter().copied().filter(|&block| block < self.look.effects).collect()
     }
 
@@ -218,9 +227,10 @@ impl Evidence<'_> {
     }
 
     /// Values and covariance of each block of a set, in usual sizes.
-    fn values(&self, set: &[usize]) -> Vec<(Vec<f64>, DMatrix<f64>)> {
+    pub(super) fn values(&self, set: &[usize]) -> Vec<(Vec<f64>, DMatrix<f64>)> {
         let Some(field) = self.look.fields.get(self.look.likely(self.explored)) else { return vec![] };
-        let (means, covariance) = field.given(set, &self.look.packed).values();
+        let given = field.given(set, &self.look.packed);
+        let ((means, _), covariance) = (given.values(), given.wide());
         let mut at = 0;
         set.iter()
             .map(|&block| {
@@ -310,7 +320,7 @@ impl Evidence<'_> {
             .sum();
         let typical: Vec<f64> = effect.parameters().iter().map(|parameter| parameter.typical).collect();
         let values: Vec<f64> = own.iter().zip(&typical).map(|(value, typical)| value * typical).collect();
-        let covariance = covariance + self.by_shapes(block, own);
+        let covariance = covariance + self.by_shapes(block, own) + self.by_companions(set, block, own);
         let covariance =
             DMatrix::from_fn(own.len(), own.len(), |r, c| covariance[(r, c)] * typical[r] * typical[c]);
         let not_addable = if own.iter().any(|value| value.abs() > BOUND) {
@@ -342,28 +352,6 @@ impl Evidence<'_> {
         }
     }
 
-    /// Covariance (usual sizes) of what grows by what is not known of its law: how far it will go is known the less,
-    /// the less of its course was seen.
-    fn by_shapes(&self, block: usize, own: &[f64]) -> DMatrix<f64> {
-        let mut spread = DMatrix::zeros(own.len(), own.len());
-        let is_late = |block: usize| self.library.effects[block].shape.is_some_and(|shape| shape < 0.0);
-        if !is_late(block) {
-            return spread;
-        }
-        let name = self.look.blocks[block].name;
-        let mut total = 0.0;
-        for model in &self.explored.models {
-            let same = |other: &usize| self.look.blocks[*other].name == name;
-            let set = self.of_library(model);
-            let Some(place) = set.iter().position(same) else { continue };
-            let Some((other, _)) = self.values(&set).into_iter().nth(place) else { continue };
-            let apart = DVector::from_iterator(own.len(), other.iter().zip(own).map(|(a, b)| a - b));
-            spread += &apart * apart.transpose() * model.probability;
-            total += model.probability;
-        }
-        if total > 0.0 { spread / total } else { spread }
-    }
-
     /// Every name in the place of one block of a set: name, log score over its shapes, and its best
     /// shape.
     fn exchanged(&self, set: &[usize], block: usize) -> Vec<(usize, f64, usize)> {
@@ -377,7 +365,9 @@ impl Evidence<'_> {
                 continue;
             }
             let adds = given.iter().map(|given| given.log_evidence + given.adds(&blocks[other]));
-            let score = blocks[other].log_prior + log_sum(adds) / self.temperature;
+            let with: Vec<usize> = base.iter().copied().chain([other]).collect();
+            let prior = blocks[other].log_prior + together(&with, blocks);
+            let score = prior + log_sum(adds) / self.temperature;
             match found.iter_mut().find(|(known, _)| *known == name) {
                 Some((_, shapes)) => shapes.push((score, other)),
                 None => found.push((name, vec![(score, other)])),
@@ -393,6 +383,13 @@ impl Evidence<'_> {
     }
 }
 
+/// The same of a class (itself first), its probability, and whether it is of every site.
+fn stands_for_its_class(class: &[ClassMember], probability: f64, is_family: bool) -> bool {
+    let Some((own, others)) = class.split_first() else { return true };
+    let is_open_family = is_family && others.iter().any(|member| member.id == own.id);
+    others.is_empty() || probability >= ONE_NAME && !is_open_family
+}
+
 /// Parameters as the command line names them.
 pub(super) fn parameters(effect: &Effect, values: &[f64], covariance: &DMatrix<f64>) -> Vec<FoundParameter> {
     let reported = effect.report(values, covariance);
@@ -404,4 +401,30 @@ pub(super) fn parameters(effect: &Effect, values: &[f64], covariance: &DMatrix<f
         text: one.text,
     });
     found.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn member(id: &str, site: &str) -> ClassMember {
+        ClassMember { id: id.to_owned(), site: site.to_owned(), title: String::new(), probability: 0.5 }
+    }
+
+    #[test]
+    fn a_name_stands_for_its_class_when_it_is_alone_or_probable() {
+        let alone = [member("joint-zero", "r_arm_x")];
+        assert!(stands_for_its_class(&alone, 0.3, false));
+        let two = [member("joint-zero", "r_arm_x"), member("axis-skew", "r_arm_x")];
+        assert!(stands_for_its_class(&two, 0.8, false));
+        assert!(!stands_for_its_class(&two, 0.79, false));
+    }
+
+    #[test]
+    fn a_family_with_a_member_in_its_class_is_no_name_however_probable() {
+        let open = [member("joint-zero", ""), member("joint-zero", "r_arm_x")];
+        assert!(!stands_for_its_class(&open, 1.0, true));
+        let closed = [member("joint-zero", ""), member("axis-skew", "r_arm_x")];
+        assert!(stands_for_its_class(&closed, 0.9, true));
+    }
 }

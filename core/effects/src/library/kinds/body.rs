@@ -51,7 +51,7 @@ pub(super) static FINGER_BEND: Entry = Entry {
         deviation.contact_m += (normal - finger * finger.dot(&normal)) * (PRESSING_N * values[0]);
     }),
     reported: Effect::plain,
-    is: &[],
+    is: &[Is::OneSided],
 };
 
 pub(super) static FINGER_ROLL: Entry = Entry {
@@ -64,7 +64,7 @@ pub(super) static FINGER_ROLL: Entry = Entry {
     shown: |rows| rows.touches,
     act: Act::Arm(|_, situation, values, deviation| deviation.contact_m += situation.roll * values[0]),
     reported: Effect::plain,
-    is: &[Is::Planned],
+    is: &[Is::Planned, Is::OneSided],
 };
 
 pub(super) static TOUCH_DRAG: Entry = Entry {
@@ -77,7 +77,7 @@ pub(super) static TOUCH_DRAG: Entry = Entry {
     shown: |rows| rows.touches && rows.direction,
     act: Act::Arm(|_, situation, values, deviation| deviation.contact_m += situation.sweep * values[0]),
     reported: Effect::plain,
-    is: &[Is::Planned],
+    is: &[Is::Planned, Is::OneSided],
 };
 
 pub(super) static BASE_TILT: Entry = Entry {
@@ -106,7 +106,7 @@ pub(super) static TORSO_LEAN: Entry = Entry {
     shown: |rows| rows.arm,
     act: Act::Arm(|_, situation, values, deviation| deviation.base_rad += situation.lean_nm * values[0]),
     reported: Effect::plain,
-    is: &[Is::Planned, Is::OfLoad],
+    is: &[Is::Planned, Is::OfLoad, Is::OneSided],
 };
 
 pub(super) static PAYLOAD_MASS: Entry = Entry {

@@ -80,7 +80,7 @@ pub(super) static GRAVITY_BACKLASH: Entry = Entry {
     shown: |rows| rows.arm,
     act: Act::Turn(|at| 0.5 * at.value() * (at.torque_nm() / SEATING_TORQUE_NM).tanh()),
     reported: Effect::size,
-    is: &[Is::Planned],
+    is: &[Is::Planned, Is::OneSided],
 };
 
 pub(super) static STICTION: Entry = Entry {
@@ -93,7 +93,7 @@ pub(super) static STICTION: Entry = Entry {
     shown: |rows| rows.directions && rows.commanded,
     act: Act::Turn(|at| -0.5 * at.value() * at.direction()),
     reported: Effect::size,
-    is: &[Is::SeenByEncoder],
+    is: &[Is::SeenByEncoder, Is::OneSided],
 };
 
 pub(super) static EARLY_LOG: Entry = Entry {

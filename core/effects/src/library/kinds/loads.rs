@@ -15,7 +15,7 @@ pub(super) static SERVO_DROOP: Entry = Entry {
     shown: |rows| rows.arm && rows.commanded,
     act: Act::Turn(|at| at.value() * at.torque_nm()),
     reported: Effect::stiffness,
-    is: &[Is::Planned, Is::SeenByEncoder, Is::OfLoad],
+    is: &[Is::Planned, Is::SeenByEncoder, Is::OfLoad, Is::OneSided],
 };
 
 pub(super) static JOINT_SAG: Entry = Entry {
@@ -28,7 +28,7 @@ pub(super) static JOINT_SAG: Entry = Entry {
     shown: |rows| rows.arm,
     act: Act::Turn(|at| at.value() * at.torque_nm()),
     reported: Effect::plain,
-    is: &[Is::Planned, Is::OfLoad],
+    is: &[Is::Planned, Is::OfLoad, Is::OneSided],
 };
 
 pub(super) static SIDEWAYS_GIVE: Entry = Entry {
@@ -43,7 +43,7 @@ pub(super) static SIDEWAYS_GIVE: Entry = Entry {
         deviation.skew_rad[at.joint] += at.situation.sideways_nm[at.joint] * at.value();
     }),
     reported: Effect::plain,
-    is: &[Is::Planned, Is::OfLoad],
+    is: &[Is::Planned, Is::OfLoad, Is::OneSided],
 };
 
 pub(super) static LINK_BENDING: Entry = Entry {
@@ -56,7 +56,7 @@ pub(super) static LINK_BENDING: Entry = Entry {
     shown: |rows| rows.arm,
     act: Act::Joint(bend),
     reported: Effect::plain,
-    is: &[Is::OfLoad],
+    is: &[Is::OfLoad, Is::OneSided],
 };
 
 pub(super) static CREEP: Entry = Entry {
@@ -69,7 +69,7 @@ pub(super) static CREEP: Entry = Entry {
     shown: Known::is_held,
     act: Act::Turn(|at| at.value() * at.torque_nm() * at.effect.grown(at.held_s())),
     reported: Effect::plain,
-    is: &[Is::OfLoad],
+    is: &[Is::OfLoad, Is::OneSided],
 };
 
 pub(super) static TORQUE_LIMIT: Entry = Entry {
@@ -85,7 +85,7 @@ pub(super) static TORQUE_LIMIT: Entry = Entry {
         at.value() * torque_nm.signum() * (torque_nm.abs() - limit_nm).max(0.0)
     }),
     reported: Effect::limit,
-    is: &[Is::SeenByEncoder, Is::OfLoad],
+    is: &[Is::SeenByEncoder, Is::OfLoad, Is::OneSided],
 };
 
 /// The link between joints `j − 1` and `j` as a beam that is held at the former: a force F at its
