@@ -15,7 +15,8 @@ use super::ask::Ask;
 use super::dialogs::Question;
 use super::jogging::RENEW;
 use super::settings::ThemeChoice;
-use crate::operator::actions::undo::undo;
+use crate::operator::actions::timeline::newest as newest_undo;
+use crate::operator::actions::undo::{Undo, undo};
 use crate::operator::guidance::guidance;
 use crate::operator::{
     Action, CommissionAction, DetectAction, GapAction, GridAction, LabelsAction, ModelsAction, Outbox,
@@ -132,6 +133,10 @@ impl PlumblineWindow {
             Action::Scores(ScoresAction::AddModels) => self.ask_for(ctx, Question::ScoreModels),
             Action::Scores(ScoresAction::ChooseSet) => self.ask_for(ctx, Question::ScoreSet),
             Action::Scores(ScoresAction::ExportCsv) => self.ask_for(ctx, Question::ScoresCsv),
+            Action::Timeline(TimelineAction::TakeBack) => {
+                let commands = newest_undo(&self.view).into_iter().flat_map(Undo::commands);
+                commands.for_each(|command| self.send(command));
+            }
             Action::Timeline(TimelineAction::Report(format)) => {
                 self.ask_for(ctx, Question::SetupReport(format));
             }
@@ -261,7 +266,6 @@ impl PlumblineWindow {
             Action::Grasp(action) => return action.command(&self.view),
             Action::Trials(action) => return action.command(),
             Action::Grid(action) => return action.command(),
-            Action::Timeline(action) => return action.command(&self.view),
             Action::Labels(action) => return action.command(&self.view),
             Action::Scores(action) => return action.command(&self.view),
             Action::Detect(action) => return action.command(),
@@ -277,7 +281,7 @@ impl PlumblineWindow {
             Ok(undo) => {
                 // It may be the point that goes.
                 self.panels.models.tables.chosen = None;
-                self.send(undo.command);
+                undo.commands().for_each(|command| self.send(command));
             }
             Err(why) => self.notices.say(&format!("Undo: {why}.")),
         }

@@ -31,15 +31,15 @@ pub(super) struct NoticeList {
 }
 
 impl NoticeList {
-    /// Adds the engine's messages that are new, and the newest one again when it was said again.
+    /// Adds the engine's messages that are new, and the newest one known when it was said again, before others came.
     pub(super) fn take(&mut self, notices: &Arc<[Notice]>) {
-        let again = notices.last().filter(|last| last.number == self.newest && last.times > self.times);
-        if let Some(last) = again {
-            let more = last.times - self.times;
-            self.times = last.times;
-            self.add(last, more);
-        }
         let first_new = notices.partition_point(|notice| notice.number <= self.newest);
+        let known = notices[..first_new].last().filter(|known| known.number == self.newest);
+        if let Some(again) = known.filter(|known| known.times > self.times) {
+            let more = again.times - self.times;
+            self.times = again.times;
+            self.add(again, more);
+        }
         let new = &notices[first_new..];
         for notice in new {
             (self.newest, self.times) = (notice.number, notice.times);
@@ -201,6 +201,10 @@ mod tests {
         let again = list.shown.on_screen(std::time::Instant::now()).next().expect("it is said again");
         assert_eq!((again.times, list.unread()), (4, 2));
         assert_eq!(list.shown.history().count(), 1);
+        // And so it does where another one was said after it before the window looked.
+        list.take(&Arc::from([said(6)[0].clone(), notice(2, NoticeLevel::Info)]));
+        let times: Vec<u32> = list.shown.history().map(|message| message.times).collect();
+        assert_eq!((times, list.unread()), (vec![1, 6], 3));
     }
 
     #[test]

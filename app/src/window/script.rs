@@ -10,7 +10,8 @@ use plumbline_engine::view::{
     BetweenSteps, Connection, GraspStep, MotionState, SourceStatus, StepState, TouchPhase,
 };
 use plumbline_engine::{
-    BoxEdit, Command, Destination, GraspCommand, LabelsCommand, ProbePoint, RobotCommand, View,
+    BoxEdit, Command, Destination, GraspCommand, HandStep, JobCommand, LabelsCommand, ProbePoint,
+    RobotCommand, View,
 };
 use plumbline_model::Eye;
 use plumbline_model::robot::JointIndex;
@@ -19,7 +20,7 @@ use super::PlumblineWindow;
 use super::frame_time::{FrameTimes, resident_mb};
 use super::saving::save_picture;
 use super::script_step::ScriptStep;
-use crate::operator::{Action, GraspAction};
+use crate::operator::{Action, GraspAction, RobotAction};
 
 /// The steps that are left.
 #[derive(Debug)]
@@ -119,11 +120,32 @@ impl Script {
 
 /// Whether a step lets a grasp go on that waits after one of its own, or ends it.
 fn answers_a_hold(step: &ScriptStep) -> bool {
-    matches!(
-        step,
-        ScriptStep::Send(Command::Grasp(GraspCommand::Resume | GraspCommand::End))
-            | ScriptStep::Act(Action::Grasp(GraspAction::Resume | GraspAction::End))
-    )
+    match step {
+        ScriptStep::Send(command) => commands_an_answer(command),
+        ScriptStep::Act(action) => matches!(
+            action,
+            Action::Stop
+                | Action::CancelJob
+                | Action::Grasp(GraspAction::Resume | GraspAction::End | GraspAction::Hand(HandStep::Home))
+                | Action::Robot(RobotAction::TorqueOn | RobotAction::Disconnect)
+        ),
+        _ => false,
+    }
+}
+
+/// The same of a command. Of the steps of the hand only the one home is taken while a grasp is under way.
+fn commands_an_answer(command: &Command) -> bool {
+    use RobotCommand::{ConnectPort, ConnectTwin, Disconnect, Torque};
+    match command {
+        Command::Grasp(command) => {
+            matches!(command, GraspCommand::Resume | GraspCommand::End | GraspCommand::Hand(HandStep::Home))
+        }
+        Command::Robot(command) => {
+            matches!(command, Torque { .. } | Disconnect | ConnectTwin { .. } | ConnectPort { .. })
+        }
+        Command::Job(command) => matches!(command, JobCommand::Cancel(_)),
+        _ => false,
+    }
 }
 
 impl PlumblineWindow {
@@ -248,6 +270,26 @@ mod tests {
         assert_eq!(after_a_while(&mut script, &waits()), Ok(Some(resume)));
         let stuck = after_a_while(&mut script, &waits()).expect_err("it waits once more");
         assert!(stuck.to_string().contains("before align"), "{stuck}");
+    }
+
+    #[test]
+    fn what_ends_a_grasp_that_waits_answers_it_too() {
+        for step in [
+            "grasp-hand-home",
+            r#"grasp:{"hand":"home"}"#,
+            "grasp-end",
+            "stop",
+            "cancel-job",
+            "robot-torque-on",
+            r#"robot:{"torque":{"joints":[],"on":false}}"#,
+            "robot:disconnect",
+        ] {
+            let mut script = script(&[step, "quit"]);
+            assert!(matches!(after_a_while(&mut script, &waits()), Ok(Some(_))), "{step}");
+        }
+        for step in ["grasp-hand-open", "grasp:grasp", r#"grasp:{"hand":"lift"}"#, "grasp-pause"] {
+            assert!(after_a_while(&mut script(&[step]), &waits()).is_err(), "{step} is not taken then");
+        }
     }
 
     #[test]

@@ -78,7 +78,8 @@ fn work_that_goes_on_does_not_hide_it() {
         remaining: None,
         cancelling: false,
     };
-    let job = JobView { id: JobId(7), title: "Solve".to_owned(), state, elapsed: Duration::from_secs(1) };
+    let (id, title, elapsed) = (JobId(7), "Solve".to_owned(), Duration::from_secs(1));
+    let job = JobView { id, title, state, elapsed, by_itself: false };
     let view = View { jobs: Arc::from([job]), ..robot_failed(ended(WatchedThread::Robot, true)) };
     let fake = Fake::over(view);
     let window = fake.window(on(Screen::Judge));

@@ -150,7 +150,7 @@ fn without_a_known_noise_nothing_is_all_clear() {
 fn many_effects_and_warnings_are_counted_beside_the_first_three() {
     let (_, mut window) = window_of(with(found(sample::crowded())));
     click(&mut window, "Name and add");
-    assert!(says(&window, "residuals are 1000 times too large"), "warnings stand beside the verdict");
+    assert!(says(&window, "Residuals are 1000 times too large"), "warnings stand beside the verdict");
     assert!(says(&window, "1 more warning under Compare."));
     assert!(says(&window, "axis not square 2, class") && !says(&window, "axis not square 3, class"));
     assert!(shows(&window, "4 more"));

@@ -69,6 +69,7 @@ fn a_failed_job_stays_until_it_is_dismissed_and_a_done_one_does_not() {
         title: "Solve 3 pairs".to_owned(),
         state,
         elapsed: std::time::Duration::from_secs(1),
+        by_itself: false,
     };
     let failed = job(1, JobState::Failed { reason: "three pairs are too few: collect more".to_owned() });
     let done = job(2, JobState::Done { summary: "solved".to_owned() });
@@ -133,4 +134,32 @@ fn a_button_that_means_something_new_rests_for_half_a_second() {
     window.input_mut().events.extend([egui::Event::PointerMoved(pos), button(true), button(false)]);
     window.run_steps(1);
     assert_eq!(fake.take_sent().len(), 1);
+}
+
+#[test]
+fn work_that_began_by_itself_takes_neither_the_bottom_line_nor_cancel_from_what_was_asked_for() {
+    let job = |id: u64, title: &str, by_itself| JobView {
+        id: JobId(id),
+        title: title.to_owned(),
+        state: JobState::Running {
+            fraction: 0.4,
+            doing: "at work".to_owned(),
+            remaining: None,
+            cancelling: false,
+        },
+        elapsed: std::time::Duration::from_secs(1),
+        by_itself,
+    };
+    let judging = job(1, "Judge the calibration by what the eyes see", true);
+    let view = View { jobs: Arc::from([judging.clone()]), ..View::default() };
+    let window = Fake::over(view.clone()).window(on(Screen::Collect));
+    assert!(!says(&window, "by what the eyes see: at work"));
+    assert_eq!(plumbline::Action::CancelJob.refusal(&view).as_deref(), Some("no job is running"));
+
+    let jobs = Arc::from([judging, job(2, "Solve 30 pairs", false)]);
+    let fake = Fake::over(View { jobs, ..View::default() });
+    let mut window = fake.window(on(Screen::Collect));
+    assert!(says(&window, "Solve 30 pairs: at work") && !says(&window, "by what the eyes see: at work"));
+    click(&mut window, "Cancel");
+    assert_eq!(fake.take_sent(), [Command::from(JobCommand::Cancel(JobId(2)))]);
 }

@@ -70,6 +70,7 @@ pub fn searching() -> View {
             cancelling: false,
         },
         elapsed: std::time::Duration::from_secs(3),
+        by_itself: false,
     };
     let gap = GapView { searching: Some(JobId(7)), step: StepState::Running, ..recorded() };
     View { jobs: Arc::from([job]), ..with(gap) }

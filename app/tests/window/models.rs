@@ -138,6 +138,7 @@ fn a_training_that_failed_says_why() {
             reason: "Training M3 diverged in iteration 4: choose another seed.".to_owned(),
         },
         elapsed: std::time::Duration::from_secs(1),
+        by_itself: false,
     };
     let fake = Fake::over(View { jobs: Arc::from([failed]), ..with(recorded()) });
     let window = fake.window_of_size(on_models(), TALL);

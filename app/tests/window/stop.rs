@@ -35,6 +35,7 @@ fn everything_runs() -> View {
             cancelling: false,
         },
         elapsed: Duration::from_secs(1),
+        by_itself: false,
     };
     View {
         source: Arc::new(SourceView {

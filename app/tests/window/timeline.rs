@@ -31,6 +31,7 @@ fn entry(number: u64, subject: Subject, title: &str, errors: [Option<Figure>; 2]
         id_before: None,
         id_after: Some(format!("id-{number}")),
         outside: false,
+        by_undo: false,
     }
 }
 
@@ -113,12 +114,18 @@ fn what_was_put_in_use_last_of_a_kind_is_taken_back_and_an_earlier_one_is_used_a
         window.run_steps(3);
         sent.extend(fake.take_sent());
     }
+    let back = |subject, to: Option<&str>| -> Command {
+        TimelineCommand::TakesBack { subject, to: to.map(str::to_owned) }.into()
+    };
     assert_eq!(
         sent,
         [
-            Command::from(TouchCommand::UseNominalPlacement),
-            Command::from(MountCommand::UseNominal),
-            Command::from(EyesCommand::UseEarlier { id: Some("id-1".to_owned()) }),
+            back(Subject::Screen, None),
+            TouchCommand::UseNominalPlacement.into(),
+            back(Subject::Mount, None),
+            MountCommand::UseNominal.into(),
+            back(Subject::Eyes, Some("id-1")),
+            EyesCommand::UseEarlier { id: Some("id-1".to_owned()) }.into(),
         ]
     );
     click(&mut window, "Use again: calibration of 14 pairs");

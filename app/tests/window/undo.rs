@@ -5,8 +5,8 @@ use std::sync::Arc;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use plumbline::{Screen, WindowSettings};
-use plumbline_engine::view::EyesView;
-use plumbline_engine::{Command, EyesCommand, MountCommand, TouchCommand, View};
+use plumbline_engine::view::{EyesView, Subject};
+use plumbline_engine::{Command, EyesCommand, MountCommand, TimelineCommand, TouchCommand, View};
 
 use crate::fake::{Fake, click, says, shows};
 use crate::timeline::results;
@@ -23,28 +23,33 @@ fn with_results() -> View {
     }
 }
 
-/// What Undo asks for on each screen that has something to take back.
-fn wanted() -> [(Screen, Command); 5] {
+/// What Undo asks for on each screen that has something to take back; the timeline is told first where a result is.
+fn wanted() -> [(Screen, Vec<Command>); 5] {
+    let id = Some("id-1".to_owned());
+    let back = |subject, to: &Option<String>| -> Command {
+        TimelineCommand::TakesBack { subject, to: to.clone() }.into()
+    };
+    let screen = vec![back(Subject::Screen, &None), TouchCommand::UseNominalPlacement.into()];
     [
-        (Screen::Collect, EyesCommand::Undo.into()),
-        (Screen::Accept, EyesCommand::UseEarlier { id: Some("id-1".to_owned()) }.into()),
-        (Screen::Mount, MountCommand::UseNominal.into()),
-        (Screen::Touch, TouchCommand::UseNominalPlacement.into()),
-        (Screen::Timeline, TouchCommand::UseNominalPlacement.into()),
+        (Screen::Collect, vec![EyesCommand::Undo.into()]),
+        (Screen::Accept, vec![back(Subject::Eyes, &id), EyesCommand::UseEarlier { id }.into()]),
+        (Screen::Mount, vec![back(Subject::Mount, &None), MountCommand::UseNominal.into()]),
+        (Screen::Touch, screen.clone()),
+        (Screen::Timeline, screen),
     ]
 }
 
 #[test]
 fn one_button_and_one_key_take_back_what_was_put_in_use_on_each_screen() {
-    for (screen, command) in wanted() {
+    for (screen, commands) in wanted() {
         let fake = Fake::over(with_results());
         let mut window = fake.window(on(screen));
         fake.take_sent();
         click(&mut window, "Undo");
-        assert_eq!(fake.take_sent(), std::slice::from_ref(&command), "{screen:?} by the button");
+        assert_eq!(fake.take_sent(), commands, "{screen:?} by the button");
         window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
         window.run_steps(3);
-        assert_eq!(fake.take_sent(), [command], "{screen:?} by the key");
+        assert_eq!(fake.take_sent(), commands, "{screen:?} by the key");
     }
 }
 

@@ -86,9 +86,9 @@ impl View {
         self.threads.iter().find(|fault| fault.thread == thread)
     }
 
-    /// The oldest job that is still running.
+    /// The oldest job that is still running and that did not begin by itself.
     pub fn running_job(&self) -> Option<&JobView> {
-        self.jobs.iter().find(|job| job.state.is_running())
+        self.jobs.iter().find(|job| job.state.is_running() && !job.by_itself)
     }
 }
 

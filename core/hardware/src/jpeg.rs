@@ -34,30 +34,46 @@ fn by_opencv(rows: i32, columns: i32, image: &RgbImage, quality: u8) -> opencv::
     Ok(file.as_slice().to_vec())
 }
 
-/// Walks the markers (ITU-T T.81, annex B) and returns whether the end-of-image marker is
-/// reached. Bytes after it (cameras pad their files) do not matter, and an embedded preview
-/// with its own end marker is not mistaken for the end.
-pub(crate) fn is_complete(bytes: &[u8]) -> bool {
-    const START_OF_IMAGE: u8 = 0xD8;
-    const END_OF_IMAGE: u8 = 0xD9;
-    const START_OF_SCAN: u8 = 0xDA;
-    const TEMPORARY: u8 = 0x01;
+const START_OF_IMAGE: u8 = 0xD8;
+const END_OF_IMAGE: u8 = 0xD9;
+const START_OF_SCAN: u8 = 0xDA;
+const HUFFMAN_TABLES: u8 = 0xC4;
+const TEMPORARY: u8 = 0x01;
 
+/// Whether the end-of-image marker is reached. Bytes after it (cameras pad their files) do not
+/// matter, and an embedded preview with its own end marker is not mistaken for the end.
+pub(crate) fn is_complete(bytes: &[u8]) -> bool {
+    first_marker(bytes, |marker| marker == END_OF_IMAGE).is_some()
+}
+
+/// Whether its Huffman tables stand in it, before its first scan. Many cameras leave them out of
+/// their frames, because Motion JPEG has usual ones: OpenCV fills these in, and other decoders
+/// refuse such a file.
+pub(crate) fn has_huffman_tables(bytes: &[u8]) -> bool {
+    let first = first_marker(bytes, |marker| matches!(marker, HUFFMAN_TABLES | START_OF_SCAN | END_OF_IMAGE));
+    first == Some(HUFFMAN_TABLES)
+}
+
+/// Walks the markers (ITU-T T.81, annex B) to the first one that is wanted; `None`: the file is
+/// cut or damaged before.
+fn first_marker(bytes: &[u8], is_wanted: impl Fn(u8) -> bool) -> Option<u8> {
     let mut at = 0;
     let mut in_scan = false;
     loop {
-        let Some((marker, after)) = next_marker(bytes, at, in_scan) else { return false };
+        let (marker, after) = next_marker(bytes, at, in_scan)?;
+        if is_wanted(marker) {
+            return Some(marker);
+        }
         at = after;
         match marker {
-            END_OF_IMAGE => return true,
             // Markers without content; restart markers are part of the scan.
-            0xD0..=0xD7 | START_OF_IMAGE | TEMPORARY => {}
+            0xD0..=0xD7 | START_OF_IMAGE | END_OF_IMAGE | TEMPORARY => {}
             _ => {
-                let Some(&[high, low]) = bytes.get(at..at + 2) else { return false };
+                let Some(&[high, low]) = bytes.get(at..at + 2) else { return None };
                 let length = usize::from(u16::from_be_bytes([high, low]));
                 // The length counts its own two bytes.
                 if length < 2 || bytes.len() < at + length {
-                    return false;
+                    return None;
                 }
                 at += length;
                 in_scan = marker == START_OF_SCAN;
@@ -86,6 +102,22 @@ fn next_marker(bytes: &[u8], mut at: usize, in_scan: bool) -> Option<(u8, usize)
             _ => return Some((code, at)),
         }
     }
+}
+
+/// The same file without its Huffman tables, as many cameras send it.
+#[cfg(test)]
+pub(crate) fn without_huffman_tables(bytes: &[u8]) -> Vec<u8> {
+    let mut kept = bytes[..2].to_vec();
+    let mut at = 2;
+    while bytes[at + 1] != START_OF_SCAN {
+        let next = at + 2 + usize::from(u16::from_be_bytes([bytes[at + 2], bytes[at + 3]]));
+        if bytes[at + 1] != HUFFMAN_TABLES {
+            kept.extend(&bytes[at..next]);
+        }
+        at = next;
+    }
+    kept.extend(&bytes[at..]);
+    kept
 }
 
 #[cfg(test)]
@@ -120,6 +152,22 @@ mod tests {
         for length in 0..bytes.len() {
             assert!(!is_complete(&bytes[..length]), "cut at {length} of {}", bytes.len());
         }
+    }
+
+    #[test]
+    fn huffman_tables_count_only_where_they_stand_before_the_scan_as_a_segment_of_their_own() {
+        let bytes = jpeg();
+        assert!(has_huffman_tables(&bytes));
+        let bare = without_huffman_tables(&bytes);
+        assert!(bare.len() < bytes.len() && is_complete(&bare) && !has_huffman_tables(&bare));
+        // Those of an embedded preview, and those behind the first scan, are none of its own.
+        let preview: [u8; 10] = [0xFF, 0xD8, 0xFF, 0xE1, 0, 6, 0xFF, HUFFMAN_TABLES, 0, 2];
+        assert!(!has_huffman_tables(&[&preview, &bare[2..]].concat()));
+        let late: [u8; 4] = [0xFF, HUFFMAN_TABLES, 0, 2];
+        let end = bare.len() - 2;
+        assert!(!has_huffman_tables(&[&bare[..end], &late, &bare[end..]].concat()));
+        assert!(has_huffman_tables(&[&bare[..2], &late, &bare[2..]].concat()));
+        assert!(!has_huffman_tables(&bytes[..2]) && !has_huffman_tables(&[]));
     }
 
     #[test]

@@ -38,7 +38,8 @@ pub struct StereoFrame {
 /// What a source knows of a pair besides its images.
 #[derive(Clone, Debug, Default)]
 pub struct Beside {
-    /// The images as the cameras have compressed them, left and right, where they did.
+    /// The images as the cameras have compressed them, left and right, where they did and left out nothing that
+    /// decoders need.
     pub jpegs: Option<[Arc<[u8]>; 2]>,
     /// How the eyes were then, of a pair that was recorded; `None`: it comes as it is taken, or from a source that
     /// says nothing of the kind.

@@ -5,17 +5,17 @@ use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use mcap::read::ChunkReader;
 use mcap::records::Record;
 
 use crate::error::RecordingError;
+use crate::parse::{each_in_chunk, parse};
 use crate::records::each_record;
 use crate::topic::Topic;
 use crate::whose::Whose;
 use crate::writer::{Attached, END};
 
 /// A record longer than this is no record of a recording, bytes.
-const LONGEST: usize = 256 << 20;
+pub(crate) const LONGEST: usize = 256 << 20;
 /// Bytes before the first record.
 const MAGIC: u64 = 8;
 /// Bytes before the body of a record: what it is, and how long.
@@ -90,8 +90,7 @@ impl Index {
 impl Index {
     fn take(&mut self, opcode: u8, body: &[u8]) -> mcap::McapResult<()> {
         let offset = self.offset + HEAD;
-        self.offset = offset + body.len() as u64;
-        match mcap::parse_record(opcode, body)? {
+        match parse(opcode, body)? {
             Record::Header(header) => self.software = header.library,
             Record::Channel(channel) => self.channel(&channel),
             Record::Metadata(metadata) if metadata.name == "plumbline" => {
@@ -105,10 +104,12 @@ impl Index {
                 media_type: header.media_type,
                 bytes: data.into_owned(),
             }),
-            Record::Chunk { header, data } => self.chunk(offset, body.len(), header, &data)?,
+            Record::Chunk { .. } => self.chunk(offset, body)?,
             Record::DataEnd(_) => self.is_whole = true,
             _ => {}
         }
+        // One that is not whole yet, of a file that is still being written, is read again.
+        self.offset = offset + body.len() as u64;
         Ok(())
     }
 
@@ -118,18 +119,12 @@ impl Index {
         }
     }
 
-    fn chunk(
-        &mut self,
-        offset: u64,
-        length: usize,
-        header: mcap::records::ChunkHeader,
-        data: &[u8],
-    ) -> mcap::McapResult<()> {
+    fn chunk(&mut self, offset: u64, body: &[u8]) -> mcap::McapResult<()> {
         let chunk = self.chunks.len();
         let mut found = Vec::new();
         let mut nth = 0;
-        for record in ChunkReader::new(header, data)? {
-            match record? {
+        each_in_chunk(body, LONGEST, |opcode, body| {
+            match parse(opcode, body)? {
                 Record::Channel(channel) => self.channel(&channel),
                 Record::Message { header, .. } => {
                     let place = Place { chunk, nth, at: header.log_time, sequence: header.sequence };
@@ -138,7 +133,9 @@ impl Index {
                 }
                 _ => {}
             }
-        }
+            Ok(())
+        })?;
+        let length = body.len();
         self.chunks.push(ChunkPlace { offset, length });
         for (topic, place) in found {
             self.messages.entry(topic).or_default().push(place);

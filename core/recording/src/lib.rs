@@ -15,6 +15,7 @@ mod frames;
 mod index;
 mod messages;
 mod outlines;
+mod parse;
 mod reader;
 mod records;
 mod topic;

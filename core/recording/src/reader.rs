@@ -8,15 +8,15 @@ use std::path::{Path, PathBuf};
 use foxglove::Decode;
 use foxglove::messages::{CompressedImage, FrameTransforms, JointStates, Log};
 use jiff::Timestamp;
-use mcap::read::ChunkReader;
 use mcap::records::Record;
 use plumbline_model::EyesThen;
 use serde_json::Value;
 
 use crate::error::RecordingError;
 use crate::frames;
-use crate::index::{Index, Place};
+use crate::index::{Index, LONGEST, Place};
 use crate::messages::{self, JointReading, Note};
+use crate::parse::{each_in_chunk, parse};
 use crate::topic::Topic;
 use crate::whose::Whose;
 use crate::writer::{Attached, Jpeg};
@@ -140,7 +140,7 @@ impl Recording {
             _ => 0.0,
         };
         let eyes = self.eyes.get(&(left_place.at, left_place.sequence)).copied();
-        let eyes = eyes.map(|place| self.eyes_then(place)).transpose()?.unwrap_or_default();
+        let eyes = eyes.map(|place| self.eyes_then(place)).transpose()?.flatten().unwrap_or_default();
         Ok(RecordedPair {
             eyes,
             at: self.moment(left_place)?,
@@ -150,10 +150,11 @@ impl Recording {
         })
     }
 
-    /// How the eyes were; numbers that cannot be are not known.
-    fn eyes_then(&mut self, place: Place) -> Result<EyesThen, RecordingError> {
+    /// How the eyes were; numbers that cannot be are not known, and `None`: it is damaged, and its pair is seen all
+    /// the same.
+    fn eyes_then(&mut self, place: Place) -> Result<Option<EyesThen>, RecordingError> {
         let then: Result<EyesThen, _> = serde_json::from_slice(self.bytes(place)?);
-        then.map(EyesThen::as_can_be).map_err(|error| self.damaged(&error.to_string()))
+        Ok(then.ok().map(EyesThen::as_can_be))
     }
 
     /// Where the left eye was in the robot each time that was written: rows of a matrix 4 by 4 that takes points (m)
@@ -234,17 +235,14 @@ impl Recording {
         self.file.seek(SeekFrom::Start(place.offset)).map_err(io)?;
         self.file.read_exact(&mut body).map_err(io)?;
         let wrong = |error: mcap::McapError| damaged(&self.path, &error.to_string());
-        let Record::Chunk { header, data } =
-            mcap::parse_record(mcap::records::op::CHUNK, &body).map_err(wrong)?
-        else {
-            return Err(damaged(&self.path, "a chunk is none any more"));
-        };
         let mut messages = Vec::new();
-        for record in ChunkReader::new(header, &data).map_err(wrong)? {
-            if let Record::Message { data, .. } = record.map_err(wrong)? {
+        each_in_chunk(&body, LONGEST, |opcode, body| {
+            if let Record::Message { data, .. } = parse(opcode, body)? {
                 messages.push(data.into_owned());
             }
-        }
+            Ok(())
+        })
+        .map_err(wrong)?;
         Ok(messages)
     }
 

@@ -6,6 +6,7 @@ use std::path::Path;
 use mcap::records::Record;
 
 use crate::error::RecordingError;
+use crate::parse::parse;
 use crate::records::each_record;
 
 /// Whose a recording is.
@@ -24,7 +25,7 @@ impl Whose {
     /// When there is no file, or it is no recording. One that does not say whose it is, is the robot's.
     pub fn read(file: &Path) -> Result<Self, RecordingError> {
         let mut whose = Self::default();
-        each_record(file, 1 << 20, 0, |opcode, body| match mcap::parse_record(opcode, body) {
+        each_record(file, 1 << 20, 0, |opcode, body| match parse(opcode, body) {
             Ok(Record::Metadata(metadata)) if metadata.name == "plumbline" => {
                 whose = Self::of(&metadata);
                 ControlFlow::Break(())

@@ -278,6 +278,38 @@ fn what_cannot_be_said_of_the_eyes_is_not_known() {
 }
 
 #[test]
+fn a_pair_is_seen_though_what_is_said_of_its_eyes_is_damaged() {
+    let folder = folder();
+    let file = folder.path().join("log.mcap");
+    let mut writer = RecordingWriter::create(&file, start(), &about()).expect("begun");
+    writer.pair(start(), 0, images(0), None).expect("written");
+    writer.told(Topic::Eyes, start(), &json!({ "eyes_on_s": "long" })).expect("written");
+    writer.finish().expect("finished");
+    let pair = Recording::open(&file).expect("a recording").pair(0).expect("readable");
+    assert!(pair.images == images(0) && pair.eyes.is_unknown(), "{:?}", pair.eyes);
+}
+
+#[test]
+fn a_chunk_that_was_not_whole_when_it_was_looked_at_is_read_again() {
+    let folder = folder();
+    let file = written(folder.path(), 4);
+    let bytes = fs::read(&file).expect("there");
+    let growing = folder.path().join("growing.mcap");
+    // As over a network: all of its length is there, and some of its bytes are not.
+    let mut holed = bytes.clone();
+    let hole = holed.len() * 5 / 8;
+    holed[hole..hole + 64].fill(0x41);
+    fs::write(&growing, holed).expect("written");
+    let mut recording = Recording::open(&growing).expect("a recording");
+    let pairs = check(&mut recording);
+    assert!(pairs > 0 && pairs < 40 && !recording.is_whole(), "{pairs} pairs");
+    assert_eq!(recording.go_on().expect("readable"), 0, "nothing has come");
+    fs::write(&growing, &bytes).expect("written");
+    assert_eq!(recording.go_on().expect("readable"), 40 - pairs);
+    assert!(check(&mut recording) == 40 && recording.is_whole());
+}
+
+#[test]
 fn a_recording_that_is_still_written_is_read_on() {
     let folder = folder();
     let file = written(folder.path(), 4);

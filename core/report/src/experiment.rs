@@ -52,7 +52,7 @@ pub const TABLE: [&str; 10] = [
     "published",
     "inside",
     "published",
-    "hand found",
+    "hand to 15 mm",
     "refused",
     "palm off, mm",
     "eyes, mm",
@@ -194,7 +194,7 @@ fn map(drawing: &mut Drawing, frame: &Frame, experiment: &Experiment, method: &M
     drawing.anchored([robot[0], robot[1] + 8.0], "robot", Style::SMALL, Anchor::Middle);
 }
 
-/// From missed to lifted; gray where the hand was not found.
+/// From missed to lifted; gray where the hand was not located.
 fn color(share: f64, hand_found: Option<bool>) -> Color {
     if hand_found == Some(false) && share == 0.0 {
         return ink::FLOOR;
@@ -206,8 +206,8 @@ fn color(share: f64, hand_found: Option<bool>) -> Color {
 
 fn legend(drawing: &mut Drawing, y: f64) {
     let text = "In the dots: lifted; small beside them: lifted of three in the published experiment on the robot. Blue: \
-                always lifted, orange: never, gray: the hand was not found; small rings: beyond the reach of \
-                the published arm. Light gray: touchscreen; dashed: area of the published networks. Palm off: where \
+                always lifted, orange: never, gray: never, and the hand was not located to 15 mm; small rings: \
+                beyond the reach of the published arm. Light gray: touchscreen; dashed: area of the published networks. Palm off: where \
                 the hand closed, median … worst; eyes and arm: medians of what each of the two errs by itself.";
     drawing.paragraph([MARGIN, y - 10.0], WIDTH - 2.0 * MARGIN, text, Style::SMALL, 3);
 }

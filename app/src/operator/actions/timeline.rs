@@ -6,7 +6,7 @@ use plumbline_engine::view::TimelineEntry;
 use plumbline_engine::{Command, TimelineFormat, View};
 use serde::Serialize;
 
-use super::undo::{back_to, of_result};
+use super::undo::{Undo, back_to, of_result};
 
 /// Of the timeline of results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -48,26 +48,17 @@ impl TimelineAction {
             Self::TakeBack | Self::Report(_) => None,
         }
     }
-
-    /// The command that it stands for; `None` where the window has to ask first.
-    pub fn command(self, view: &View) -> Option<Command> {
-        match self {
-            Self::TakeBack => take_back(view, newest(view)?),
-            Self::Report(_) => None,
-        }
-    }
 }
 
-/// The newest change that can be taken back.
-fn newest(view: &View) -> Option<&TimelineEntry> {
-    view.timeline.entries.iter().rev().find(|entry| take_back(view, entry).is_some())
+/// Takes back the newest change that can be.
+pub fn newest(view: &View) -> Option<Undo> {
+    view.timeline.entries.iter().rev().find_map(|entry| take_back(view, entry))
 }
 
 /// What takes an entry back; `None`: something came after it, it changed nothing, or nothing is known that was
 /// before.
-pub fn take_back(view: &View, entry: &TimelineEntry) -> Option<Command> {
-    let undo = view.timeline.is_newest(entry).then(|| of_result(view, entry.subject))?;
-    undo.ok().map(|undo| undo.command)
+pub fn take_back(view: &View, entry: &TimelineEntry) -> Option<Undo> {
+    view.timeline.is_newest(entry).then(|| of_result(view, entry.subject))?.ok()
 }
 
 /// What puts in use again what an entry put in use; `None`: it is in use, or its workflow keeps only the
@@ -91,6 +82,6 @@ mod tests {
         let why = TimelineAction::Report(TimelineFormat::Html).refusal(&view);
         assert_eq!(why.as_deref(), Some("the timeline is not read yet"));
         assert!(TimelineAction::TakeBack.refusal(&view).is_some_and(|why| why.contains("nothing was put")));
-        assert_eq!(TimelineAction::TakeBack.command(&view), None);
+        assert_eq!(newest(&view), None);
     }
 }

@@ -5,7 +5,8 @@ use std::borrow::Cow;
 
 use plumbline_engine::view::{Subject, TimelineEntry};
 use plumbline_engine::{
-    Command, EyesCommand, GapCommand, ModelsCommand, MountCommand, TablesCommand, TouchCommand, View,
+    Command, EyesCommand, GapCommand, ModelsCommand, MountCommand, TablesCommand, TimelineCommand,
+    TouchCommand, View,
 };
 
 use super::{GapAction, LabelsAction, ModelsAction};
@@ -18,8 +19,24 @@ pub struct Undo {
     pub of: &'static str,
     /// What goes, within a sentence.
     pub what: String,
+    /// What is in use then, within a sentence; `None`: who takes it back knows.
+    pub then: Option<String>,
     /// Who takes it back.
     pub command: Command,
+    /// What the timeline is told before, where it keeps the order.
+    mark: Option<TimelineCommand>,
+}
+
+impl Undo {
+    /// Of what is only edited, or of whose order its workflow knows.
+    fn of_workflow(of: &'static str, what: &str, command: impl Into<Command>) -> Self {
+        Self { of, what: what.to_owned(), then: None, command: command.into(), mark: None }
+    }
+
+    /// What is to be sent, in this order.
+    pub fn commands(self) -> impl Iterator<Item = Command> {
+        self.mark.map(Command::from).into_iter().chain([self.command])
+    }
 }
 
 /// Why nothing is.
@@ -37,11 +54,11 @@ pub fn undo(view: &View, screen: Screen) -> Result<Undo, NoUndo> {
         Screen::Mount => of_result(view, Subject::Mount),
         Screen::Touch => of_result(view, Subject::Screen),
         // What is edited is finer than what is in use, and is what the hand was at.
-        Screen::Models if view.models.tables.can_undo => Ok(Undo {
-            of: "Grasp tables",
-            what: "the last change of grasp height and yaw".to_owned(),
-            command: ModelsCommand::Tables(TablesCommand::Undo).into(),
-        }),
+        Screen::Models if view.models.tables.can_undo => Ok(Undo::of_workflow(
+            "Grasp tables",
+            "the last change of grasp height and yaw",
+            ModelsCommand::Tables(TablesCommand::Undo),
+        )),
         Screen::Models => of_result(view, Subject::Correction),
         Screen::Gap | Screen::HandEye | Screen::Drift => of_result(view, Subject::Effects),
         Screen::Commission | Screen::Timeline => of_any(view),
@@ -56,8 +73,7 @@ fn of_pairs(view: &View) -> Result<Undo, NoUndo> {
     if !view.eyes.can_undo {
         return Err("no pair was added or deleted".into());
     }
-    let what = "the last change of the pairs".to_owned();
-    Ok(Undo { of: "Pairs", what, command: EyesCommand::Undo.into() })
+    Ok(Undo::of_workflow("Pairs", "the last change of the pairs", EyesCommand::Undo))
 }
 
 fn of_boxes(view: &View) -> Result<Undo, NoUndo> {
@@ -66,7 +82,7 @@ fn of_boxes(view: &View) -> Result<Undo, NoUndo> {
         Some(why) => Err(why),
         None => {
             let command = action.command(view).ok_or("no image is open")?;
-            Ok(Undo { of: "Boxes", what: "the last change of the boxes".to_owned(), command })
+            Ok(Undo::of_workflow("Boxes", "the last change of the boxes", command))
         }
     }
 }
@@ -81,25 +97,42 @@ fn of_any(view: &View) -> Result<Undo, NoUndo> {
 
 /// What is in use of a kind of result.
 pub fn of_result(view: &View, subject: Subject) -> Result<Undo, NoUndo> {
-    let command = match subject {
-        Subject::Correction => workflow(ModelsAction::Undo.refusal(view), ModelsCommand::Undo)?,
-        Subject::Effects => workflow(GapAction::Undo.refusal(view), GapCommand::Undo)?,
+    let in_use = view.timeline.in_use.iter().find(|now| now.subject == subject);
+    let what =
+        in_use.map_or_else(|| format!("the {}", subject.name().to_lowercase()), |now| now.title.clone());
+    let of_workflow = |command| Undo::of_workflow(subject.name(), &what, command);
+    match subject {
+        Subject::Correction => {
+            workflow(ModelsAction::Undo.refusal(view), ModelsCommand::Undo).map(of_workflow)
+        }
+        Subject::Effects => workflow(GapAction::Undo.refusal(view), GapCommand::Undo).map(of_workflow),
         Subject::Eyes | Subject::Mount | Subject::Screen => {
             if !view.timeline.is_known {
                 return Err("the timeline of results is not read yet".into());
             }
-            let before =
-                before(&view.timeline.entries, subject).ok_or("nothing was in use before that is known")?;
-            back_to(subject, before).ok_or("nothing was in use before that is known")?
+            let nothing = "nothing was in use before that is known";
+            let to = before(&view.timeline.entries, subject).ok_or(nothing)?;
+            let command = back_to(subject, to).ok_or(nothing)?;
+            let mark = TimelineCommand::TakesBack { subject, to: to.cloned() };
+            let then = title_of(&view.timeline.entries, subject, to);
+            Ok(Undo { then, mark: Some(mark), ..of_workflow(command) })
         }
         Subject::Finding | Subject::Check => {
-            return Err("it was only measured, so that there is nothing to take back".into());
+            Err("it was only measured, so that there is nothing to take back".into())
         }
+    }
+}
+
+/// What something that was in use is called; `None`: it was in use before the timeline began.
+fn title_of(entries: &[TimelineEntry], subject: Subject, id: Option<&String>) -> Option<String> {
+    let is_it = |entry: &&TimelineEntry| entry.subject == subject && entry.id_after.as_ref() == id;
+    let title = entries.iter().rev().find(is_it).map(|entry| entry.title.clone());
+    let as_described = match subject {
+        Subject::Eyes => "no calibration",
+        Subject::Screen => "the place in the rig file",
+        _ => "the mount as it is described",
     };
-    let in_use = view.timeline.in_use.iter().find(|now| now.subject == subject);
-    let what =
-        in_use.map_or_else(|| format!("the {}", subject.name().to_lowercase()), |now| now.title.clone());
-    Ok(Undo { of: subject.name(), what, command })
+    title.or_else(|| id.is_none().then(|| as_described.to_owned()))
 }
 
 /// These keep the order in which theirs were in use themselves.
@@ -120,7 +153,7 @@ pub fn back_to(subject: Subject, id: Option<&String>) -> Option<Command> {
 }
 
 /// What was in use before what is in use now: its id, where it was not as described. Undone step by step, as
-/// if what was taken back had never been; what was used again on purpose counts as a step of its own.
+/// if what was taken back had never been; what was used again on purpose is a step of its own.
 fn before(entries: &[TimelineEntry], subject: Subject) -> Option<Option<&String>> {
     let mut steps: Vec<Option<&String>> = Vec::new();
     for entry in entries.iter().filter(|entry| entry.subject == subject) {
@@ -128,7 +161,7 @@ fn before(entries: &[TimelineEntry], subject: Subject) -> Option<Option<&String>
             steps.push(entry.id_before.as_ref());
         }
         let now = entry.id_after.as_ref();
-        if steps.len() > 1 && steps[steps.len() - 2] == now {
+        if entry.by_undo && steps.len() > 1 && steps[steps.len() - 2] == now {
             steps.pop();
         } else {
             steps.push(now);
@@ -145,10 +178,10 @@ mod tests {
 
     use super::*;
 
-    /// The ids that were in use one after the other, from nothing on.
-    fn entries(ids: &[Option<&str>]) -> Vec<TimelineEntry> {
+    /// The ids that were in use one after the other, from nothing on; `true`: by Undo.
+    fn entries(ids: &[(Option<&str>, bool)]) -> Vec<TimelineEntry> {
         let mut before = None;
-        let entry = |(number, id): (usize, &Option<&str>)| {
+        let entry = |(number, (id, by_undo)): (usize, &(Option<&str>, bool))| {
             let after = id.map(str::to_owned);
             TimelineEntry {
                 number: number as u64 + 1,
@@ -162,31 +195,45 @@ mod tests {
                 id_before: std::mem::replace(&mut before, after.clone()),
                 id_after: after,
                 outside: false,
+                by_undo: *by_undo,
             }
         };
         ids.iter().enumerate().map(entry).collect()
     }
 
-    fn back(ids: &[Option<&str>]) -> Option<Option<String>> {
+    fn back(ids: &[(Option<&str>, bool)]) -> Option<Option<String>> {
         before(&entries(ids), Subject::Mount).map(Option::<&String>::cloned)
     }
 
     #[test]
     fn undo_goes_back_step_by_step_until_nothing_was_before() {
-        let [a, b, c] = ["a", "b", "c"].map(Some);
-        let id = |id: Option<&str>| Some(id.map(str::to_owned));
+        let [a, b, c] = ["a", "b", "c"].map(|id| (Some(id), false));
+        let undone = |(id, _): (Option<&'static str>, bool)| (id, true);
+        let none = (None, false);
+        let id = |(id, _): (Option<&str>, bool)| Some(id.map(str::to_owned));
         assert_eq!(back(&[]), None);
-        assert_eq!(back(&[a]), id(None), "as it is described");
+        assert_eq!(back(&[a]), id(none), "as it is described");
         assert_eq!(back(&[a, b, c]), id(b));
-        assert_eq!(back(&[a, b, c, b]), id(a), "what was undone is gone");
-        assert_eq!(back(&[a, b, c, b, a]), id(None));
-        assert_eq!(back(&[a, b, c, b, a, None]), None, "there is nothing left");
-        assert_eq!(back(&[a, b, c, a]), id(c), "an earlier one that was used again is a step of its own");
-        assert_eq!(back(&[a, b, None]), id(b), "so is going to none at all");
+        assert_eq!(back(&[a, b, c, undone(b)]), id(a), "what was undone is gone");
+        assert_eq!(back(&[a, b, c, undone(b), undone(a)]), id(none));
+        assert_eq!(back(&[a, b, c, undone(b), undone(a), undone(none)]), None, "there is nothing left");
     }
 
-    fn mounted(ids: &[Option<&str>]) -> View {
-        let entries = entries(ids);
+    #[test]
+    fn what_was_used_again_on_purpose_is_a_step_of_its_own() {
+        let [a, b, c] = ["a", "b", "c"].map(|id| (Some(id), false));
+        let none = (None, false);
+        let id = |(id, _): (Option<&str>, bool)| Some(id.map(str::to_owned));
+        assert_eq!(back(&[a, b, c, a]), id(c));
+        assert_eq!(back(&[a, b, a]), id(b), "also the one right before");
+        assert_eq!(back(&[a, b, a, (Some("b"), true)]), id(a), "and Undo of it goes on from there");
+        assert_eq!(back(&[a, b, none]), id(b), "so is going to none at all");
+        assert_eq!(back(&[a, none]), id(a));
+    }
+
+    fn mounted(ids: &[&str]) -> View {
+        let ids: Vec<_> = ids.iter().map(|id| (Some(*id), false)).collect();
+        let entries = entries(&ids);
         let now = entries.last().map(|entry| InUseNow {
             subject: Subject::Mount,
             title: entry.title.clone(),
@@ -201,15 +248,22 @@ mod tests {
 
     #[test]
     fn each_screen_takes_back_its_own_and_the_timeline_the_newest() {
-        let view = mounted(&[Some("a"), Some("b")]);
+        let view = mounted(&["a", "b"]);
         let back: Command = MountCommand::UseEarlier { id: "a".to_owned() }.into();
         for screen in [Screen::Mount, Screen::Timeline, Screen::Commission] {
             let undo = undo(&view, screen).expect("a mount is in use");
             assert_eq!((undo.of, &undo.command), ("Mount", &back), "{screen:?}");
-            assert!(undo.what.contains("mount"), "{}", undo.what);
+            assert_eq!(
+                (&*undo.what, undo.then.as_deref()),
+                (r#"mount Some("b")"#, Some(r#"mount Some("a")"#))
+            );
+            let to = Some("a".to_owned());
+            let mark = TimelineCommand::TakesBack { subject: Subject::Mount, to };
+            assert_eq!(undo.commands().collect::<Vec<_>>(), [mark.into(), back.clone()]);
         }
-        let nominal = undo(&mounted(&[Some("a")]), Screen::Mount).expect("a mount is in use");
+        let nominal = undo(&mounted(&["a"]), Screen::Mount).expect("a mount is in use");
         assert_eq!(nominal.command, MountCommand::UseNominal.into());
+        assert_eq!(nominal.then.as_deref(), Some("the mount as it is described"));
         for screen in Screen::ALL
             .into_iter()
             .filter(|screen| !matches!(screen, Screen::Mount | Screen::Timeline | Screen::Commission))

@@ -74,6 +74,7 @@ mod tests {
             id_before: None,
             id_after: None,
             outside: true,
+            by_undo: false,
         };
         assert_eq!(errors(&entry), "5.88 → 0.930 mm");
         assert!(about(&entry).contains("while this program was closed"));

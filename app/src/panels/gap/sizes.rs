@@ -1,6 +1,6 @@
 //! How large an effect is: its values with their intervals, and what it does on the table.
 
-use egui::{Grid, RichText, TextStyle, Ui};
+use egui::{Grid, Label, RichText, TextStyle, Ui};
 use plumbline_widgets::theme::{self, space};
 use plumbline_widgets::{format, parameter};
 
@@ -78,7 +78,8 @@ fn below(ui: &mut Ui, rows: Vec<Row>) {
             ui.spacing_mut().item_spacing = egui::vec2(space::S, 2.0);
             for text in row {
                 if !text.text().is_empty() {
-                    ui.label(text);
+                    // As a whole: a text that is broken begins under what stands before it.
+                    ui.add(Label::new(text).extend());
                 }
             }
         });

@@ -121,11 +121,15 @@ fn is_better(entry: &TimelineEntry) -> bool {
 }
 
 fn undo_button(ui: &mut Ui, cx: &mut PanelContext<'_>, entry: &TimelineEntry) {
-    let (command, label, help) = match (take_back(cx.view, entry), use_again(cx.view, entry)) {
-        (Some(command), _) => {
-            (command, "Undo", "What was in use before is in use again. Nothing is deleted.")
+    let (commands, label, help) = match (take_back(cx.view, entry), use_again(cx.view, entry)) {
+        (Some(undo), _) => {
+            let then = undo.then.as_deref().unwrap_or("what was in use before");
+            let help = format!("In use then: {then}. Nothing is deleted.");
+            (undo.commands().collect(), "Undo", help)
         }
-        (None, Some(command)) => (command, "Use again", "Puts this in use again. Nothing is deleted."),
+        (None, Some(command)) => {
+            (vec![command], "Use again", "Puts this in use again. Nothing is deleted.".to_owned())
+        }
         (None, None) => return,
     };
     let button = ui.add(Button::new(RichText::new(label).text_style(TextStyle::Small)));
@@ -134,6 +138,6 @@ fn undo_button(ui: &mut Ui, cx: &mut PanelContext<'_>, entry: &TimelineEntry) {
         WidgetInfo::labeled(egui::Role::Button, true, format!("{label}: {}", words::title(entry)))
     });
     if button.on_hover_text(help).clicked() {
-        cx.outbox.send(command);
+        commands.into_iter().for_each(|command| cx.outbox.send(command));
     }
 }

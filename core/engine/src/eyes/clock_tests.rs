@@ -197,7 +197,7 @@ fn a_recording_of_the_twin_has_not_the_clock_of_the_twin_that_runs() {
     desk.open(SourceSpec::Recording { file: "log.mcap".into(), of_twin: true });
     assert_eq!(desk.on_s(5), None);
     let why = desk.view().drift.unexplained.expect("it cannot be explained");
-    assert!(why.contains("a recording does not say"), "{why}");
+    assert!(why.contains("this recording does not say"), "{why}");
     // Nor has a recording of the robot the clock of the cameras.
     desk.open(CAMERAS);
     desk.say(12.0);

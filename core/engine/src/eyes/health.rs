@@ -62,11 +62,20 @@ pub(super) struct Gathering {
     due: Instant,
 }
 
+/// Work that judges.
+#[derive(Clone, Debug)]
+pub(super) struct Judging {
+    job: JobId,
+    of: Of,
+    ask: Ask,
+    since: Instant,
+}
+
 /// How far it is, and what was judged last.
 #[derive(Clone, Debug, Default)]
 pub(super) struct HealthRoom {
     pub gathering: Option<Gathering>,
-    pub judging: Option<(JobId, Of, Ask)>,
+    pub judging: Option<Judging>,
     pub by_itself: ByItself,
     /// How judging ended last.
     ended: Option<(Of, HealthState)>,
@@ -112,6 +121,9 @@ impl EyesWorkflow {
     pub fn saw(&mut self, frame: &StereoFrame, around: &EyesAround, context: &mut Context<'_>) {
         self.source_changed(around, context);
         self.time_passes(around, context);
+        if self.may_give_way() && around.arm_moves {
+            return self.give_way(context);
+        }
         let now = context.time.instant;
         let Some(gathering) = &mut self.health.gathering else {
             return self.look_by_itself(frame, around, context);
@@ -131,12 +143,25 @@ impl EyesWorkflow {
         }
     }
 
+    /// Whether it is judged and nobody has asked: that ends when the arm begins to move.
+    pub fn may_give_way(&self) -> bool {
+        self.health.judging.as_ref().is_some_and(|judging| judging.ask.by_itself)
+    }
+
+    fn give_way(&mut self, context: &mut Context<'_>) {
+        let Some(Judging { job, since, .. }) = self.health.judging.take() else { return };
+        context.cancel(job);
+        self.rest_since(since, context.time.instant);
+        // Whoever has a proposal waits for what is said of it.
+        self.look_at_proposal_again(context.time.instant);
+    }
+
     /// Whether somebody has waited for as long as anybody is to wait.
     pub fn is_overdue(&self, now: Instant) -> bool {
         let waits = |ask: &Ask, at_most: Duration| now.saturating_duration_since(ask.at) >= at_most;
         let HealthRoom { gathering, judging, .. } = &self.health;
         gathering.as_ref().is_some_and(|gathering| waits(&gathering.ask, GATHERED_WITHIN))
-            || judging.as_ref().is_some_and(|(_, _, ask)| waits(ask, ANSWERED_WITHIN))
+            || judging.as_ref().is_some_and(|judging| waits(&judging.ask, ANSWERED_WITHIN))
     }
 
     /// What was seen by now is judged where no more is waited for; and where nothing comes of that, it is said.
@@ -146,8 +171,9 @@ impl EyesWorkflow {
         }
         if let Some(Gathering { pairs, ask, .. }) = self.health.gathering.take() {
             self.judge_pairs(pairs, ask, around, context);
-        } else if let Some((job, of, ask)) = self.health.judging.take() {
+        } else if let Some(Judging { job, of, ask, since }) = self.health.judging.take() {
             context.cancel(job);
+            self.rest_since(since, context.time.instant);
             self.put_off(context.time.instant);
             if !ask.by_itself {
                 self.health.ended = Some((of, HealthState::Failed(NO_TIME.to_owned())));
@@ -187,7 +213,10 @@ impl EyesWorkflow {
             rig: around.rig.clone(),
             until: ask.at + MATCHED_WITHIN,
         };
-        self.health.judging = Some((context.start(EyesWork::Health(work)), of, ask));
+        let work = EyesWork::Health(work);
+        let job = if ask.by_itself { context.start_by_itself(work) } else { context.start(work) };
+        let since = context.time.instant;
+        self.health.judging = Some(Judging { job, of, ask, since });
     }
 
     /// The calibration in use and the one proposed; `None`: none is in use.
@@ -199,15 +228,17 @@ impl EyesWorkflow {
 
     fn stop_judging(&mut self, context: &mut Context<'_>) {
         self.health.gathering = None;
-        if let Some((job, ..)) = self.health.judging.take() {
-            context.cancel(job);
+        if let Some(judging) = self.health.judging.take() {
+            context.cancel(judging.job);
         }
     }
 
     /// Judged, or why not.
     pub(super) fn judged_health(&mut self, id: JobId, ended: HealthEnded, context: &mut Context<'_>) {
         let HealthEnded { state, busy } = ended;
-        let Some((_, of, ask)) = self.health.judging.take_if(|(job, ..)| *job == id) else { return };
+        let Some(Judging { of, ask, .. }) = self.health.judging.take_if(|judging| judging.job == id) else {
+            return;
+        };
         self.rest(busy, context.time.instant);
         if let HealthState::Judged(health) = &state {
             self.health.judged = Some((of.clone(), health.clone()));
@@ -229,10 +260,13 @@ impl EyesWorkflow {
     }
 
     /// Nothing came of the work.
-    pub(super) fn not_judged(&mut self, id: JobId, why: Option<&str>) {
-        if let Some((_, of, ask)) = self.health.judging.take_if(|(job, ..)| *job == id)
-            && let Some(why) = why.filter(|_| !ask.by_itself)
-        {
+    pub(super) fn not_judged(&mut self, id: JobId, why: Option<&str>, now: Instant) {
+        let Some(Judging { of, ask, since, .. }) = self.health.judging.take_if(|judging| judging.job == id)
+        else {
+            return;
+        };
+        self.rest_since(since, now);
+        if let Some(why) = why.filter(|_| !ask.by_itself) {
             self.health.ended = Some((of, HealthState::Failed(why.to_owned())));
         }
     }
@@ -246,7 +280,7 @@ impl EyesWorkflow {
         let is_shown = |ask: &Ask| !ask.by_itself || !has_ended;
         let gathering = self.health.gathering.as_ref().filter(|gathering| is_shown(&gathering.ask));
         let gathered = gathering.map(|gathering| gathering.pairs.len());
-        let judging = self.health.judging.as_ref().filter(|(_, _, ask)| is_shown(ask));
+        let judging = self.health.judging.as_ref().filter(|judging| is_shown(&judging.ask));
         let ended = self.health.ended.as_ref().filter(|(of, _)| is_of_now(of));
         let judged = self.health.judged.as_ref().filter(|(of, _)| is_of_now(of));
         let state = match (gathered, judging) {

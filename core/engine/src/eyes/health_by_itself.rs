@@ -9,7 +9,7 @@ use plumbline_model::{StereoCalibration, StereoFrame};
 use super::clock::is_live;
 use super::health::{Ask, Of, goes_on};
 use super::view::EyesHealth;
-use super::work::Context;
+use super::work::{Context, at_most_busy};
 use super::workflow::{EyesAround, EyesWorkflow};
 use crate::ground::notice::NoticeLevel;
 
@@ -35,8 +35,8 @@ pub(super) struct ByItself {
     put_off: Option<Instant>,
     /// The proposal that was looked at.
     looked_at: Option<Of>,
-    /// How often in a row the calibration looked bad.
-    bad: u32,
+    /// Which calibration looked bad, and how often in a row.
+    bad: Option<(Arc<StereoCalibration>, u32)>,
     /// Which one was said to be bad.
     told: Option<Arc<StereoCalibration>>,
 }
@@ -63,7 +63,7 @@ impl EyesWorkflow {
         let by_itself = &mut self.health.by_itself;
         if by_itself.due.is_none() || by_itself.opened != around.source.opened {
             (by_itself.opened, by_itself.due) = (around.source.opened, Some(now + SETTLED));
-            by_itself.bad = 0;
+            by_itself.bad = None;
         }
         if !self.may_look(now) {
             return;
@@ -96,6 +96,17 @@ impl EyesWorkflow {
         self.health.by_itself.put_off = Some(now + AGAIN);
     }
 
+    /// As [`Self::put_off`], and a proposal is not taken for one that was looked at.
+    pub(super) fn look_at_proposal_again(&mut self, now: Instant) {
+        self.health.by_itself.looked_at = None;
+        self.put_off(now);
+    }
+
+    /// Nothing came of the work since then: it rests as if that had kept all processors busy until now.
+    pub(super) fn rest_since(&mut self, began: Instant, now: Instant) {
+        self.rest(at_most_busy(now.saturating_duration_since(began)), now);
+    }
+
     /// Processors were busy with it for so long: it rests until that is a small share of the time.
     pub(super) fn rest(&mut self, busy: Duration, now: Instant) {
         let by_itself = &mut self.health.by_itself;
@@ -113,18 +124,21 @@ impl EyesWorkflow {
         let by_itself = &mut self.health.by_itself;
         let is_told = by_itself.told.as_ref().is_some_and(|told| Arc::ptr_eq(told, &of.in_use));
         if health.in_use.is_good {
-            by_itself.bad = 0;
+            by_itself.bad = None;
             if is_told {
                 by_itself.told = None;
                 context.notices.add(NoticeLevel::Info, "The calibration of the eyes holds again.");
             }
             return;
         }
-        by_itself.bad += 1;
+        // How another one looked is none of its doing.
+        let before = by_itself.bad.take().filter(|(bad, _)| Arc::ptr_eq(bad, &of.in_use));
+        let times = before.map_or(0, |(_, times)| times) + 1;
+        by_itself.bad = Some((of.in_use.clone(), times));
         if !ask.by_itself {
             // Who asked reads it where he has asked.
             by_itself.told = Some(of.in_use.clone());
-        } else if by_itself.bad >= BAD_IN_A_ROW && !is_told {
+        } else if times >= BAD_IN_A_ROW && !is_told {
             by_itself.told = Some(of.in_use.clone());
             context.notices.add(NoticeLevel::Warning, does_not_hold(health));
         }

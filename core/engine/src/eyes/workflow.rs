@@ -370,8 +370,8 @@ impl Workflow for EyesWorkflow {
         self.refresh();
     }
 
-    fn work_ended(&mut self, id: JobId, why: Option<&str>, _: &EyesAround, _: &mut Context<'_>) {
+    fn work_ended(&mut self, id: JobId, why: Option<&str>, _: &EyesAround, context: &mut Context<'_>) {
         self.busy.forget(id);
-        self.not_judged(id, why);
+        self.not_judged(id, why, context.time.instant);
     }
 }

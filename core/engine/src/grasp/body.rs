@@ -21,7 +21,7 @@ use crate::robot::{GivenUp, LeadAnswer, LeadOrder, Leader, Reins};
 const SAME_RAD: f64 = 5e-4;
 /// An order is asked after this often, so that it can be ended.
 const ASKED_EVERY: Duration = Duration::from_millis(50);
-/// No order takes longer than this while it is not paused.
+/// No order takes longer than this while it neither is paused nor waits for joints that were late.
 const LONGEST: Duration = Duration::from_secs(60);
 /// A pair comes within this time, or the eyes are taken to be blind: eyes that were started anew, on a machine
 /// that does much else, need some seconds.
@@ -185,7 +185,7 @@ impl<'a> LedBody<'a> {
             if let Some(answer) = self.ropes.leader.answer(ASKED_EVERY)? {
                 return Ok(answer);
             }
-            if !self.ropes.reins.is_tight() {
+            if !self.ropes.reins.is_tight() && !self.ropes.leader.waits() {
                 left = left.saturating_sub(ASKED_EVERY);
             }
             if left.is_zero() {

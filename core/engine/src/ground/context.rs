@@ -46,6 +46,13 @@ impl<'a, W: LongWork, C> Context<'a, W, C> {
         id
     }
 
+    /// Starts work that nobody asked for: the window goes on saying what the operator asked for.
+    pub fn start_by_itself(&mut self, work: W) -> JobId {
+        let id = self.start(work);
+        self.jobs.began_by_itself(id);
+        id
+    }
+
     /// Asks work to stop.
     pub fn cancel(&mut self, id: JobId) {
         self.asked.push(Asked::Cancel(id));

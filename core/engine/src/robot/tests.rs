@@ -37,8 +37,8 @@ struct Record {
     unknown: Vec<JointIndex>,
     late: Vec<JointIndex>,
     gone: Option<String>,
-    /// A joint that holds and was read just now.
-    heard: Option<JointIndex>,
+    /// A joint that holds, and when it was read.
+    heard: Option<(JointIndex, Instant)>,
     /// How the last move ended.
     outcome: Option<MoveOutcome>,
 }
@@ -60,9 +60,9 @@ impl Arm for FakeArm {
             let (unknown, late) = (record.unknown.clone().into(), record.late.clone().into());
             (unknown, late, record.gone.clone(), record.heard, record.outcome.clone())
         };
-        let reading = |joint| JointReading {
+        let reading = |(joint, read_at)| JointReading {
             torque_on: Some(true),
-            age: Some(Duration::from_millis(10)),
+            read_at: Some(read_at),
             ..JointReading::new(joint, 1)
         };
         let joints: Vec<JointReading> = heard.into_iter().map(reading).collect();
@@ -297,13 +297,21 @@ fn a_way_on_which_a_joint_was_late_goes_on_by_itself_and_one_whose_servo_is_sile
     let said: Vec<String> = bench.worker.take_notes().into_iter().map(|(_, text)| text).collect();
     assert!(said.iter().any(|text| text.contains("goes on by itself") && text.contains("busy")), "{said:?}");
     ended(None);
+    bench.worker.switches.heartbeat.beat();
     bench.worker.tick(began + Duration::from_secs(5));
     assert_eq!(moves(&bench), 1, "it is not heard yet");
-    record.lock().expect("no test panics in here").heard = Some(elbow);
-    bench.worker.tick(began + Duration::from_secs(6));
+    assert!(leader.waits());
+    let heard_at = |bench: &mut Bench, seconds| {
+        let at = began + Duration::from_secs(seconds);
+        record.lock().expect("no test panics in here").heard = Some((elbow, at));
+        bench.worker.switches.heartbeat.beat();
+        bench.worker.tick(at);
+    };
+    heard_at(&mut bench, 6);
     assert_eq!(moves(&bench), 1, "one reading is not enough");
-    bench.worker.tick(began + Duration::from_secs(8));
+    heard_at(&mut bench, 8);
     assert_eq!(moves(&bench), 2);
+    assert!(!leader.waits());
     assert!(leader.answer(Duration::ZERO).expect("not given up").is_none(), "it is under way");
 
     let name = "Right elbow".to_owned();
@@ -311,6 +319,41 @@ fn a_way_on_which_a_joint_was_late_goes_on_by_itself_and_one_whose_servo_is_sile
     bench.worker.tick(began + Duration::from_secs(9));
     let why = leader.answer(Duration::ZERO).expect_err("it is given up").to_string();
     assert!(why.contains("check its cable and power"), "{why}");
+}
+
+#[test]
+fn whoever_moves_the_arm_ends_when_torque_is_switched_also_between_two_orders() {
+    for on in [true, false] {
+        let mut bench = Bench::connected();
+        let elbow = bench.joint("r_elbow_y");
+        let (leader, led) = Leader::pair("grasping", true, &Reins::default());
+        bench.worker.control(RobotControl::Lead(led));
+        let follow = || LeadOrder::Follow { way: vec![vec![(elbow, 1.6)]], speed_rad_s: 0.5 };
+        leader.order(follow()).expect("it is led");
+        bench.worker.tick(Instant::now());
+        bench.send(RobotCommand::Torque { joints: vec![elbow], on });
+        assert!(
+            matches!(bench.asked()[..], [Asked::Move(_), Asked::Hold, Asked::Torque(1, _)]),
+            "{:?}",
+            bench.asked()
+        );
+        let ended = || leader.answer(Duration::ZERO).expect_err("it is given up").to_string();
+        assert!(ended().contains("torque was switched"));
+        for order in [follow(), LeadOrder::State] {
+            leader.order(order).expect("it is led until its leader has gone");
+            bench.worker.tick(Instant::now());
+            assert!(ended().contains("torque was switched"));
+        }
+        assert_eq!(bench.asked().len(), 3, "nothing moves any more: {:?}", bench.asked());
+        // Who only looks is not concerned.
+        let mut bench = Bench::connected();
+        let (leader, led) = Leader::pair("planning a grasp", false, &Reins::default());
+        bench.worker.control(RobotControl::Lead(led));
+        bench.send(RobotCommand::Torque { joints: vec![], on });
+        leader.order(LeadOrder::State).expect("it is led");
+        bench.worker.tick(Instant::now());
+        assert!(matches!(leader.answer(Duration::ZERO), Ok(Some(LeadAnswer::State(_)))));
+    }
 }
 
 #[test]

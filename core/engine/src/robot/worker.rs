@@ -38,6 +38,10 @@ const TRAIL: Duration = Duration::from_secs(30);
 /// Places nearer than this to the last one are left out of the trail, m.
 const TRAIL_STEP_M: f64 = 0.002;
 
+/// Why what moved the arm ends.
+const TORQUE_SWITCHED: &str =
+    "torque was switched by hand meanwhile: look how the arm stands, then begin anew";
+
 /// What the state is told.
 #[derive(Clone, Debug)]
 pub struct News {
@@ -85,7 +89,7 @@ pub struct Worker {
     /// The arm of the chosen tip with the model's effects; `None` when it cannot be moved.
     pub(super) arm_model: Option<ModelArm>,
     /// Which joints move together.
-    together: Chains,
+    pub(super) together: Chains,
     reach: Option<Reach>,
     pub(super) paths: Paths,
     pub(super) preview: Option<(Resolved, Preview)>,
@@ -408,6 +412,7 @@ impl Worker {
     fn torque(&mut self, joints: &[JointIndex], on: bool) -> Result<(), Unable> {
         let all: Vec<JointIndex> = self.rig.servos.iter().map(|servo| servo.joint).collect();
         let joints = if joints.is_empty() { &all } else { joints };
+        self.end_lead(TORQUE_SWITCHED);
         Ok(self.arm()?.torque(joints, on)?)
     }
 

@@ -61,6 +61,8 @@ use crate::work::{Work, WorkResult};
 pub struct State {
     rooms: Rooms,
     robot: Arc<RobotView>,
+    /// When its thread told of it last; ages of readings are those of then.
+    robot_told_at: Option<Instant>,
     twin: Arc<TwinView>,
     twins_started: u64,
     /// The robot as its description has it.
@@ -106,6 +108,7 @@ impl State {
         let mut state = Self {
             rooms: Rooms::new(data_dir),
             robot: Arc::default(),
+            robot_told_at: None,
             twin: Arc::default(),
             twins_started: 0,
             rig: nominal.rig().clone(),
@@ -331,14 +334,15 @@ impl State {
         // What a source delivers before it is known of is not of the recording of the one before.
         if opened == self.rooms.source.view().opened {
             let is_on = self.rooms.recording.is_on();
-            let (eyes, places) = (self.eyes_then(), is_on.then(|| self.eye_places()).flatten());
+            let at = frame.stamp.captured_at;
+            let (eyes, places) = (self.eyes_then(at), is_on.then(|| self.eye_places(at)).flatten());
             self.record(|recording, time| recording.saw(&frame, eyes, places, time));
         }
         self.with::<DriftWorkflow>(World::default(), |drift, around, context| {
             drift.saw(&frame, around, context);
         });
         let eyes = self.rooms.eyes.of(self.shown);
-        if eyes.wants_pairs() || eyes.may_look(self.clock.time().instant) {
+        if eyes.wants_pairs() || eyes.may_give_way() || eyes.may_look(self.clock.time().instant) {
             self.with::<EyesWorkflow>(self.shown, |eyes, around, context| eyes.saw(&frame, around, context));
         }
         self.rooms.live.frame(frame, now);
@@ -421,6 +425,7 @@ impl State {
             self.actions.push(Action::Source(Control::Open(SourceSpec::Twin)));
         }
         (self.robot, self.twin) = (news.robot, news.twin);
+        self.robot_told_at = Some(self.clock.time().instant);
         let robot = self.robot.clone();
         self.record(|recording, time| recording.read(&robot, time));
         self.before_silence = None;

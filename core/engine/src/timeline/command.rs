@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
+use super::view::Subject;
+
 /// The timeline of results.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -14,6 +16,14 @@ pub enum TimelineCommand {
         file: PathBuf,
         /// As what.
         format: TimelineFormat,
+    },
+    /// What is asked of the workflow of a kind next is Undo: a step back, and no step of its own, as it would be if
+    /// the same were used again on purpose.
+    TakesBack {
+        /// Of which kind.
+        subject: Subject,
+        /// What is in use again then: its id in its workflow; `None`: as it is described.
+        to: Option<String>,
     },
 }
 

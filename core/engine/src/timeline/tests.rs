@@ -115,6 +115,30 @@ fn each_change_is_an_entry_with_the_error_before_and_after() {
 }
 
 #[test]
+fn a_step_back_by_undo_is_told_from_what_was_used_again_on_purpose() {
+    let folder = folder();
+    let mut lab = Lab::on(folder.path(), TimelineAround::default());
+    let back = |lab: &mut Lab, to: &str| {
+        let undo = TimelineCommand::TakesBack { subject: Subject::Eyes, to: Some(to.to_owned()) };
+        lab.with(|room, around, context| room.apply(undo, around, context));
+    };
+    let is_undo = |lab: &mut Lab, id: &str| {
+        lab.now(vec![eyes(Some(id), None)]).entries.last().expect("an entry").by_undo
+    };
+    assert!(!is_undo(&mut lab, "a") && !is_undo(&mut lab, "b"));
+    assert!(!is_undo(&mut lab, "a"), "used again");
+    assert!(!is_undo(&mut lab, "b"));
+    back(&mut lab, "a");
+    assert!(is_undo(&mut lab, "a"));
+    assert!(!is_undo(&mut lab, "b"), "asked for once, it is once");
+    back(&mut lab, "a");
+    assert!(!is_undo(&mut lab, "c"), "something else came in between");
+    assert!(!is_undo(&mut lab, "a"), "so that it is over");
+    let kept = Lab::on(folder.path(), TimelineAround::default()).view();
+    assert_eq!(kept.entries.iter().filter(|entry| entry.by_undo).count(), 1, "it is kept");
+}
+
+#[test]
 fn what_another_program_changed_meanwhile_is_told_as_that() {
     let folder = folder();
     let mut lab = Lab::on(folder.path(), TimelineAround::default());

@@ -124,6 +124,9 @@ pub struct TimelineEntry {
     /// Whether this program was closed when it happened: another one, or the command line, did it.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub outside: bool,
+    /// Whether it was a step back by Undo: what it took back counts as if it had never been in use.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub by_undo: bool,
 }
 
 /// What is in use of a kind.

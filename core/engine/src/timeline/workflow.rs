@@ -25,6 +25,8 @@ pub struct TimelineWorkflow {
     /// Whether the first look has been taken at a kind since the program began: what differs then was
     /// changed by another program.
     looked_at: Vec<Subject>,
+    /// Steps back that Undo has asked for, and what is in use again by them.
+    taking_back: Vec<(Subject, Option<String>)>,
     writing: Option<JobId>,
     /// Whether something came since it was written last.
     is_behind: bool,
@@ -40,7 +42,12 @@ impl TimelineWorkflow {
             if is_first {
                 self.looked_at.push(standing.subject);
             }
-            take_standing(&mut entries, standing, is_first, context.time.day);
+            let of_kind = |asked: &(Subject, Option<String>)| asked.0 == standing.subject;
+            let by_undo = self.taking_back.iter().find(|asked| of_kind(asked)).map(|(_, to)| to);
+            let by_undo = by_undo == Some(&standing.id);
+            if take_standing(&mut entries, standing, is_first, by_undo, context.time.day) {
+                self.taking_back.retain(|asked| !of_kind(asked));
+            }
         }
         take_findings(&mut entries, around);
         if let Some(check) = &around.check {
@@ -73,11 +80,18 @@ fn last_of(entries: &[TimelineEntry], subject: Subject) -> Option<&TimelineEntry
     entries.iter().rev().find(|entry| entry.subject == subject)
 }
 
-fn take_standing(entries: &mut Vec<TimelineEntry>, standing: &Standing, is_first: bool, now: Timestamp) {
+/// What is in use of a kind; whether that is another than before.
+fn take_standing(
+    entries: &mut Vec<TimelineEntry>,
+    standing: &Standing,
+    is_first: bool,
+    by_undo: bool,
+    now: Timestamp,
+) -> bool {
     let last = last_of(entries, standing.subject);
     let id_before = last.and_then(|last| last.id_after.clone());
     if id_before == standing.id {
-        return;
+        return false;
     }
     let was_in_use = |id: &Option<String>| {
         let of_subject = entries.iter().filter(|entry| entry.subject == standing.subject);
@@ -109,8 +123,10 @@ fn take_standing(entries: &mut Vec<TimelineEntry>, standing: &Standing, is_first
         id_before,
         id_after: standing.id.clone(),
         outside: is_first && kind != EntryKind::Found,
+        by_undo,
     };
     entries.push(entry);
+    true
 }
 
 fn take_findings(entries: &mut Vec<TimelineEntry>, around: &TimelineAround) {
@@ -133,6 +149,7 @@ fn take_findings(entries: &mut Vec<TimelineEntry>, around: &TimelineAround) {
             id_before: None,
             id_after: Some(found.id.clone()),
             outside: false,
+            by_undo: false,
         });
     }
 }
@@ -170,6 +187,7 @@ fn take_check(entries: &mut Vec<TimelineEntry>, check: &Check, now: Timestamp) {
         id_before: None,
         id_after: Some(check.id.clone()),
         outside: false,
+        by_undo: false,
     });
 }
 
@@ -200,6 +218,7 @@ impl Workflow for TimelineWorkflow {
             file: folder.join(FILE),
             entries: None,
             looked_at: Vec::new(),
+            taking_back: Vec::new(),
             writing: None,
             is_behind: false,
         }
@@ -216,7 +235,13 @@ impl Workflow for TimelineWorkflow {
     }
 
     fn apply(&mut self, command: TimelineCommand, around: &TimelineAround, context: &mut Context<'_>) {
-        let TimelineCommand::Report { file, format } = command;
+        let (file, format) = match command {
+            TimelineCommand::Report { file, format } => (file, format),
+            TimelineCommand::TakesBack { subject, to } => {
+                self.taking_back.retain(|(asked, _)| *asked != subject);
+                return self.taking_back.push((subject, to));
+            }
+        };
         let Some(entries) = self.entries.clone() else {
             return context.refuse("The timeline was not read yet, or cannot be: the messages say why.");
         };

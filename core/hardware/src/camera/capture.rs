@@ -25,7 +25,7 @@ pub(super) struct Delivered {
 pub(super) struct Captured {
     /// 8-bit RGB.
     pub image: RgbImage,
-    /// As the camera has compressed it, where it did.
+    /// As the camera has compressed it, where it did and left out nothing that decoders need.
     pub jpeg: Option<Arc<[u8]>>,
 }
 
@@ -130,7 +130,9 @@ fn captured(received: &Mat) -> Result<Captured, String> {
     }
     let sent = Vector::from_slice(bytes);
     let pixels = imgcodecs::imdecode(&sent, imgcodecs::IMREAD_COLOR).map_err(|error| cv::message(&error))?;
-    Ok(Captured { image: cv::rgb_image(&pixels)?, jpeg: Some(bytes.into()) })
+    // What is recorded must be read by every program.
+    let jpeg = jpeg::has_huffman_tables(bytes).then(|| bytes.into());
+    Ok(Captured { image: cv::rgb_image(&pixels)?, jpeg })
 }
 
 /// The pixel format first, because it decides which sizes and rates there are. What a
@@ -195,6 +197,11 @@ mod tests {
         assert!(off / (image.len() as f64) < 3.0, "colors are where they were");
         let cut = Mat::new_rows_cols_with_bytes::<u8>(1, 200, &sent[..200]).expect("bytes").clone_pointee();
         assert!(captured(&cut).is_err_and(|why| why.contains("its end is missing")));
+        let bare = jpeg::without_huffman_tables(&sent);
+        let received =
+            Mat::new_rows_cols_with_bytes::<u8>(1, bare.len() as i32, &bare).expect("bytes").clone_pointee();
+        let without_tables = captured(&received).expect("whole");
+        assert_eq!((without_tables.jpeg, without_tables.image), (None, found.image));
         let pixels = Mat::new_rows_cols_with_bytes::<opencv::core::Vec3b>(48, 64, &image)
             .expect("pixels")
             .clone_pointee();

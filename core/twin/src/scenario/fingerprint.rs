@@ -95,7 +95,7 @@ mod tests {
             assert_eq!(of(text), first, "{what}");
         }
         let written_out = format!(
-            "{HEAD}{BODY}toy_friction = 1.0\n[servo]\nholding = \"proportional\"\n[joint.r_elbow_y]\nslack_rad = 0.0\n[touchscreen]\nscale = [1.0, 1.0]\n"
+            "{HEAD}{BODY}toy_friction = 1.0\n[servo]\nholding = \"proportional\"\n[joint.r_elbow_y]\nslack_rad = 0.0\n[touchscreen]\nscale = [1.0, 1.0]\n[eyes.heat]\nhousing_j_per_k = 30.0\n"
         );
         assert_eq!(of(&written_out), first, "what is as described may be written out");
         let said_better =

@@ -44,15 +44,19 @@ pub struct HealthEnded {
     pub busy: Duration,
 }
 
+/// Time that processors were busy with work that took so long, at most: places are looked for by all of them, and
+/// what one of them waits is counted, too.
+pub fn at_most_busy(took: Duration) -> Duration {
+    let processors = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    took.saturating_mul(u32::try_from(processors).unwrap_or(u32::MAX))
+}
+
 impl Health {
     /// What came out; that the pairs say nothing is an outcome, too.
     pub fn run(self, context: &dyn JobContext) -> Result<HealthEnded, Cancelled> {
         let began = Instant::now();
         let state = self.looked(context)?;
-        // Places are looked for by all processors, and what one of them waits is counted, too.
-        let processors = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-        let busy = began.elapsed().saturating_mul(u32::try_from(processors).unwrap_or(u32::MAX));
-        Ok(HealthEnded { state, busy })
+        Ok(HealthEnded { state, busy: at_most_busy(began.elapsed()) })
     }
 
     fn looked(&self, context: &dyn JobContext) -> Result<HealthState, Cancelled> {

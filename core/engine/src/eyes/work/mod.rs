@@ -20,7 +20,7 @@ use crate::ground::jobs::JobError;
 pub use accept::{Accept, Accepted};
 pub use capture::{Capture, Captured, Recognize, board_seen, find_in_both, glimpse_in_both, gray};
 pub use export::Export;
-pub use health::{Health, HealthEnded, Pictures};
+pub use health::{Health, HealthEnded, Pictures, at_most_busy};
 pub use keep::Keep;
 pub use open::{Open, OpenWhat, Opened};
 pub use recording::{CollectRecording, Collected, collect_folder};

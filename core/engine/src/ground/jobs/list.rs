@@ -33,14 +33,23 @@ impl JobList {
             remaining: None,
             cancelling: false,
         };
-        self.records.push(Record { view: JobView { id, title, state, elapsed: Duration::ZERO }, quiet });
+        let view = JobView { id, title, state, elapsed: Duration::ZERO, by_itself: false };
+        self.records.push(Record { view, quiet });
         id
+    }
+
+    /// Nobody asked for this job.
+    pub fn began_by_itself(&mut self, id: JobId) {
+        if let Some(record) = self.records.iter_mut().find(|record| record.view.id == id) {
+            record.view.by_itself = true;
+        }
     }
 
     /// Takes over how far a job is.
     pub fn progress(&mut self, view: JobView) {
         if let Some(record) = self.records.iter_mut().find(|record| record.view.id == view.id) {
-            record.view = view;
+            // Who does the work does not know who asked for it.
+            record.view = JobView { by_itself: record.view.by_itself, ..view };
         }
     }
 
@@ -105,6 +114,24 @@ mod tests {
         assert!(list.is_running(b) && !list.is_running(a));
         list.dismiss(a);
         assert_eq!(list.view().len(), 1);
+    }
+
+    #[test]
+    fn that_nobody_asked_for_a_job_is_known_for_as_long_as_it_is_there() {
+        let mut list = JobList::default();
+        let (own, asked) = (list.add("judge".into(), false), list.add("solve".into(), false));
+        list.began_by_itself(own);
+        let view = |id| JobView {
+            id,
+            title: String::new(),
+            state: JobState::Cancelled,
+            elapsed: Duration::ZERO,
+            by_itself: false,
+        };
+        list.progress(view(own));
+        list.progress(view(asked));
+        list.ended(own, done(), Duration::ZERO);
+        assert_eq!(list.view().iter().map(|job| job.by_itself).collect::<Vec<_>>(), [true, false]);
     }
 
     #[test]

@@ -204,6 +204,7 @@ impl<T> JobHandle<T> {
                 cancelling: self.shared.cancel.load(Ordering::Relaxed),
             },
             elapsed,
+            by_itself: false,
         }
     }
 

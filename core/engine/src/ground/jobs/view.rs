@@ -29,6 +29,8 @@ pub struct JobView {
     pub state: JobState,
     /// Time since it started, or that it took.
     pub elapsed: Duration,
+    /// Nobody asked for it: it is not what the operator waits for, and not what *Cancel* means.
+    pub by_itself: bool,
 }
 
 /// How far a job is or how it ended. Every way to end looks different.

@@ -33,6 +33,8 @@ pub struct LiveWorkflow {
     wanted: Products,
     aim: AimChoice,
     head: HeadPose,
+    /// How it stood before a recording said how it had stood then.
+    head_before: Option<HeadPose>,
     /// The head angles that the present setup was aimed for.
     aimed_for: HeadPose,
     /// For how long the eyes have been on, s.
@@ -71,6 +73,7 @@ impl Default for LiveWorkflow {
             wanted: Products::default(),
             aim: AimChoice::default(),
             head: HeadPose::default(),
+            head_before: None,
             aimed_for: HeadPose::default(),
             eyes_on_s: None,
             model: Arc::new(RobotModel::nominal(default_rig())),

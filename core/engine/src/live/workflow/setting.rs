@@ -45,6 +45,20 @@ impl LiveWorkflow {
         }
     }
 
+    /// A recording says how the head stood then; how it stands now is kept until that is closed.
+    pub fn set_recorded_head(&mut self, head: HeadPose) {
+        self.head_before.get_or_insert(self.head);
+        self.set_head(head);
+    }
+
+    /// A recording was closed: the head stands as the robot says, else as it did before.
+    pub fn leave_recorded_head(&mut self, known: Option<HeadPose>) {
+        let before = self.head_before.take();
+        if let Some(head) = known.or(before) {
+            self.set_head(head);
+        }
+    }
+
     /// For how long the eyes have been on, s; `None`: nobody knows.
     pub fn set_eyes_on(&mut self, eyes_on_s: Option<f64>) {
         if eyes_on_s != self.eyes_on_s {

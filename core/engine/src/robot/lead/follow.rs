@@ -6,7 +6,7 @@ use std::time::Instant;
 use plumbline_hardware::joints::{JointState, Motion, Move, MoveId, MoveOutcome, Pace, Refusal};
 use plumbline_model::robot::JointIndex;
 
-use super::late::{Late, ended_late, refused_late};
+use super::late::{Late, Way, ended_late, refused_late};
 use super::{GivenUp, Stepped};
 use crate::robot::worker::Worker;
 
@@ -36,11 +36,15 @@ impl Following {
             return self.pause(worker);
         }
         self.paused = false;
-        if self.late.waits(state, &self.joints(), now)? {
-            return Ok(false);
+        if self.late.is_waiting() {
+            let (rig, together, joints) = (&*worker.rig, &worker.together, &*self.joints());
+            let way = Way { rig, together, state, joints, is_alone: worker.is_alone() };
+            if self.late.waits(way, now)? {
+                return Ok(false);
+            }
         }
         if let Some(id) = self.moving {
-            if let Some(outcome) = state.outcome(id).filter(|outcome| ended_late(outcome)) {
+            if let Some(outcome) = state.outcome(id).filter(|outcome| ended_late(outcome, state)) {
                 self.moving = None;
                 self.late.begin(given_up(outcome), true, now)?;
                 return Ok(false);
@@ -67,6 +71,11 @@ impl Following {
             }
         }
         Ok(true)
+    }
+
+    /// Whether it waits for joints that were late.
+    pub fn is_waiting(&self) -> bool {
+        self.late.is_waiting()
     }
 
     /// That it waits for joints that were late, for who watches; said once.

@@ -6,6 +6,8 @@ mod course;
 mod follow;
 mod late;
 #[cfg(test)]
+mod late_tests;
+#[cfg(test)]
 pub(crate) mod made_up;
 mod wire;
 
@@ -15,7 +17,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use crossbeam_channel::TryRecvError;
-use plumbline_hardware::joints::{HoldReason, JointState, Motion, Refusal};
+use plumbline_hardware::joints::{ArmOptions, HoldReason, JointState, Motion, Refusal};
 
 use self::closing::Closing;
 use self::follow::Following;
@@ -30,6 +32,8 @@ use crate::ground::notice::NoticeLevel;
 pub struct Leading {
     led: Option<Led>,
     doing: Option<Doing>,
+    /// Why nothing is done for him any more.
+    over: Option<GivenUp>,
 }
 
 enum Doing {
@@ -87,7 +91,7 @@ impl Worker {
             return may;
         }
         (self.preview, self.refusal) = (None, None);
-        self.leading = Leading { led: Some(led), doing: None };
+        self.leading = Leading { led: Some(led), doing: None, over: None };
         Ok(())
     }
 
@@ -144,6 +148,7 @@ impl Worker {
                 (Doing::Closing(closing), stepped)
             }
         };
+        led.wait(matches!(&doing, Doing::Following(following) if following.is_waiting()));
         match stepped {
             Ok(false) => self.leading.doing = Some(doing),
             Ok(true) => led.tell(LeadAnswer::Done),
@@ -155,6 +160,9 @@ impl Worker {
     }
 
     fn take_order(&mut self, led: &Led, order: LeadOrder) {
+        if let Some(why) = self.leading.over.clone().filter(|_| order != LeadOrder::Hold) {
+            return led.tell(LeadAnswer::GivenUp(why));
+        }
         match order {
             LeadOrder::Follow { way, speed_rad_s } => {
                 self.leading.doing = Some(Doing::Following(Following::new(way, speed_rad_s)));
@@ -201,6 +209,9 @@ impl Worker {
 
     /// What is done ends where it is: the arm holds, and fingers that close stand. Whether anything was.
     fn break_off(&mut self) -> bool {
+        if let Some(led) = &self.leading.led {
+            led.wait(false);
+        }
         let Some(doing) = self.leading.doing.take() else { return false };
         let state = self.state_that_may_move();
         if let (Doing::Closing(closing), Ok(state)) = (&doing, &state) {
@@ -225,6 +236,24 @@ impl Worker {
         self.break_off();
         self.leading.led = None;
         self.paths.allow(vec![]);
+    }
+
+    /// The operator takes the arm in hand: whoever moves it ends, also between two orders, so that nothing goes on by
+    /// itself with joints that were limp meanwhile.
+    pub(super) fn end_lead(&mut self, why: &str) {
+        if self.leading.led.as_ref().is_none_or(|led| !led.moves) {
+            return;
+        }
+        let why = GivenUp::Lost(why.to_owned());
+        self.leading.over = Some(why.clone());
+        if self.leading.doing.is_some() {
+            self.give_up(why);
+        }
+    }
+
+    /// Whether the window gives no sign of life, so that the arm would hold.
+    fn is_alone(&self) -> bool {
+        self.switches.heartbeat.age() > ArmOptions::default().heartbeat_timeout
     }
 
     /// Ends it from outside: there is no arm any more.

@@ -106,12 +106,18 @@ pub struct Led {
     answers: Sender<LeadAnswer>,
     pub(super) reins: Reins,
     course: Course,
+    waits: Arc<AtomicBool>,
 }
 
 impl Led {
     /// How the joints are now, for who wants to know it all the time.
     pub(crate) fn note(&self, state: &Arc<JointState>) {
         self.course.note(state);
+    }
+
+    /// Whether the arm stands and waits for joints that were late.
+    pub(super) fn wait(&self, waits: bool) {
+        self.waits.store(waits, Ordering::Release);
     }
 
     /// An answer that nobody waits for is let go: whoever leads has ended.
@@ -128,6 +134,7 @@ pub struct Leader {
     orders: Sender<LeadOrder>,
     answers: Receiver<LeadAnswer>,
     course: Course,
+    waits: Arc<AtomicBool>,
 }
 
 impl Leader {
@@ -135,7 +142,7 @@ impl Leader {
     pub fn pair(title: &str, moves: bool, reins: &Reins) -> (Self, Led) {
         let (orders_in, orders) = crossbeam_channel::bounded(WAITING);
         let (answers_in, answers) = crossbeam_channel::bounded(WAITING);
-        let course = Course::default();
+        let (course, waits) = (Course::default(), Arc::<AtomicBool>::default());
         let led = Led {
             title: title.to_owned(),
             moves,
@@ -143,8 +150,9 @@ impl Leader {
             answers: answers_in,
             reins: reins.clone(),
             course: course.clone(),
+            waits: waits.clone(),
         };
-        (Self { orders: orders_in, answers, course }, led)
+        (Self { orders: orders_in, answers, course, waits }, led)
     }
 
     /// From now on what the joints do is kept, also while an order is carried out: their states, this far
@@ -156,6 +164,12 @@ impl Leader {
     /// The states since this was asked last, oldest first, and how many more there were than could wait.
     pub fn take_course(&self) -> (Vec<Arc<JointState>>, usize) {
         self.course.take()
+    }
+
+    /// Whether the arm stands by itself and waits for joints that this computer was too busy to hear: that is no time
+    /// in which it moves.
+    pub fn waits(&self) -> bool {
+        self.waits.load(Ordering::Acquire)
     }
 
     /// Hands an order over.

@@ -16,8 +16,10 @@ use plumbline_vision::synthetic::{Plane, Scene, granite_texture};
 use tempfile::TempDir;
 
 use super::command::EyesCommand;
-use super::view::{AcceptedCalibration, EyesHealth, EyesView, HealthState, Origin, Proposal, ProposalHealth};
-use super::work::{EyesResult, EyesWork};
+use super::view::{
+    AcceptedCalibration, EyesHealth, EyesView, HealthFigures, HealthState, Origin, Proposal, ProposalHealth,
+};
+use super::work::{EyesResult, EyesWork, HealthEnded};
 use super::{EyesAround, EyesWorkflow};
 use crate::ground::jobs::JobId;
 use crate::ground::jobs::list::JobList;
@@ -25,6 +27,8 @@ use crate::ground::notice::Notices;
 use crate::ground::stage::Skipped;
 use crate::ground::{Asked, Context, LongWork as _, Moment, Nothing, Time, Workflow as _};
 use crate::source::view::{ReplayView, SourceStatus, SourceView};
+
+mod by_itself;
 
 struct Desk {
     room: EyesWorkflow,
@@ -47,14 +51,7 @@ impl Desk {
             ..SourceView::default()
         };
         let mut room = EyesWorkflow::new(folder.path());
-        room.in_use = Some(Arc::new(AcceptedCalibration {
-            id: "in use".to_owned(),
-            calibration: calibration(in_use_off_deg),
-            accepted: jiff::Timestamp::UNIX_EPOCH,
-            uncertainty: None,
-            stated_at_m: 0.45,
-            depth_per_px_m: None,
-        }));
+        room.in_use = Some(Arc::new(accepted(in_use_off_deg)));
         let time = Time::now();
         let around = EyesAround {
             newest: Some(frame(seen(), time)),
@@ -126,6 +123,33 @@ impl Desk {
         self.with(|room, around, context| room.work_done(id, result, around, context));
     }
 
+    /// Pairs come, one a second, until they are judged.
+    fn until_judging(&mut self) {
+        for _ in 0..200 {
+            if !self.started.is_empty() {
+                return;
+            }
+            self.see(dark());
+        }
+        panic!("it is never judged");
+    }
+
+    /// What is being judged ends at once, and the calibration in use looks bad.
+    fn looks_bad(&mut self) {
+        let (id, _) = self.started.pop().expect("it is judged");
+        let in_use = HealthFigures {
+            is_good: false,
+            off_m: [0.01, 0.02, 0.03],
+            sigma_m: [0.001; 3],
+            turn_rad: 0.01,
+            epipolar_px: 2.0,
+        };
+        let health = EyesHealth { in_use, proposed: None, pairs: 4, places: 900 };
+        let state = HealthState::Judged(Arc::new(health));
+        let result = EyesResult::Health(HealthEnded { state, busy: Duration::ZERO });
+        self.with(|room, around, context| room.work_done(id, result, around, context));
+    }
+
     /// A minute passes, a pair a second, and what is judged ends; how often that was.
     fn minute(&mut self, images: &[Arc<RgbImage>; 2]) -> usize {
         let mut judged = 0;
@@ -181,6 +205,17 @@ impl Desk {
     fn accepts(&mut self) -> bool {
         self.ask(EyesCommand::Accept);
         matches!(self.started.pop(), Some((_, EyesWork::Accept(_))))
+    }
+}
+
+fn accepted(off_deg: f64) -> AcceptedCalibration {
+    AcceptedCalibration {
+        id: "in use".to_owned(),
+        calibration: calibration(off_deg),
+        accepted: jiff::Timestamp::UNIX_EPOCH,
+        uncertainty: None,
+        stated_at_m: 0.45,
+        depth_per_px_m: None,
     }
 }
 
