@@ -65,7 +65,7 @@ impl State {
         let [after, before] =
             [when.saturating_duration_since(read_at), read_at.saturating_duration_since(when)];
         let is_near = after.max(before) <= KNOWN_FOR;
-        is_near.then(|| speed_rad_s * (after.as_secs_f64() - before.as_secs_f64()))
+        is_near.then_some(speed_rad_s * (after.as_secs_f64() - before.as_secs_f64()))
     }
 
     /// Pan and tilt of the head whose eyes the source shows, as they were read last.
