@@ -30,6 +30,7 @@ pub(crate) fn each_in_chunk(
     let options = LinearReaderOptions::default()
         .with_skip_start_magic(true)
         .with_skip_end_magic(true)
+        .with_validate_chunk_crcs(true)
         .with_record_length_limit(longest);
     let mut reader = LinearReader::new_with_options(options);
     while let Some(event) = reader.next_event() {
