@@ -20,10 +20,12 @@ pub fn primary_button(ui: &mut Ui, text: &str, why_not: Option<&str>) -> Respons
         ui.spacing_mut().button_padding = vec2(space::M, space::S);
         // Not faded while disabled: it must stay readable, because it says what comes next.
         ui.visuals_mut().disabled_alpha = 1.0;
-        let text_width = ui.painter().layout_no_wrap(text.to_owned(), theme::strong_font(ui), ink).size().x;
-        let size = vec2((text_width + 2.0 * space::M).max(120.0), 36.0);
-        let response =
-            ui.add_enabled_ui(enabled, |ui| ui.add_sized(size, Button::new(label).fill(fill))).inner;
+        let (size, is_one_line) = primary_size(ui, text);
+        let mut button = Button::new(label).fill(fill);
+        if !is_one_line {
+            button = button.wrap();
+        }
+        let response = ui.add_enabled_ui(enabled, |ui| ui.add_sized(size, button)).inner;
         if let Some(why_not) = why_not {
             ui.label(theme::small(ui, why_not));
         }
@@ -34,6 +36,24 @@ pub fn primary_button(ui: &mut Ui, text: &str, why_not: Option<&str>) -> Respons
         response
     })
     .inner
+}
+
+/// How large it is, and whether its words stand in one line; where the room is too narrow for that, they stand in as many
+/// as they need.
+fn primary_size(ui: &Ui, text: &str) -> (Vec2, bool) {
+    let layout = |wrap_width: f32| {
+        let font = theme::strong_font(ui);
+        ui.painter().layout(text.to_owned(), font, ui.visuals().text_color(), wrap_width).size()
+    };
+    let margin = vec2(2.0 * space::M, 2.0 * space::S);
+    let in_one_line = layout(f32::INFINITY) + margin;
+    let room = ui.available_width();
+    if in_one_line.x <= room {
+        return (vec2(in_one_line.x.max(120.0), 36.0), true);
+    }
+    // A little less than there is: rounding must not need one line more than there is room for.
+    let height = (layout((room - margin.x - 2.0).max(1.0)) + margin).y.max(36.0);
+    (vec2(room, height), false)
 }
 
 /// A button that stands out among others, to be added where it is wanted.

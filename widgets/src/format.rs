@@ -64,9 +64,12 @@ impl Quantity {
         }
     }
 
-    /// The number alone, three significant digits: `12.3`.
+    /// The number alone, three significant digits: `12.3`. Of a length below a millimeter two: `0.73`; nothing here
+    /// is measured finer.
     pub fn number(self, si: f64) -> String {
-        significant(self.on_screen(si), 3)
+        let value = self.on_screen(si);
+        let is_small = matches!(self, Self::Length) && value.abs() < 1.0;
+        significant(value, if is_small { 2 } else { 3 })
     }
 
     /// Number and unit: `12.3 mm`.
@@ -265,6 +268,9 @@ mod tests {
     #[test]
     fn units_are_those_of_the_screen() {
         assert_eq!(mm(0.012_34), "12.3 mm");
+        assert_eq!(mm(0.000_734), "0.73 mm");
+        assert_eq!(mm(-0.000_043), "−0.043 mm");
+        assert_eq!(mm(0.000_999), "1.0 mm");
         assert_eq!(degrees(std::f64::consts::FRAC_PI_6), "30.0°");
         assert_eq!(joint_degrees(0.005), "0.3°");
         assert_eq!(joint_degrees(-2.0), "−114.6°");

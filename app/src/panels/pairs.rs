@@ -1,7 +1,7 @@
 //! The collected pairs: capture, delete last or any.
 
 use egui::{Button, ScrollArea, Ui};
-use plumbline_engine::view::{CollectedPair, EyesView};
+use plumbline_engine::view::{CaptureEnded, CollectedPair, EyesView};
 use plumbline_engine::{EyesCommand, Products, SourceSpec};
 use plumbline_model::Eye;
 use plumbline_widgets::empty::{EmptyState, Message};
@@ -45,8 +45,12 @@ fn controls(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         }
     });
     let live = cx.view.source.replay.is_none();
-    if live && cx.view.eyes.accepting_ended_capture {
-        ui.label(theme::weak(ui, "Capturing by itself ended when the calibration was accepted."));
+    if let (true, Some(ended)) = (live, cx.view.eyes.capture_ended) {
+        let when = match ended {
+            CaptureEnded::Accepted => "when the calibration was accepted",
+            CaptureEnded::MountLooks => "when the head began to turn for the mount",
+        };
+        ui.label(theme::weak(ui, format!("Capturing by itself ended {when}.")));
     }
     if let (true, Some(hint)) = (live, &cx.view.eyes.hint) {
         ui.label(theme::weak(ui, hint_text(hint)));
@@ -75,8 +79,11 @@ fn empty(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         return;
     }
     let message = if cx.view.source.replay.is_some() {
-        Message::new("No pairs yet", "Use all pairs of the recording, or step to a pair and capture it.")
-            .button("Capture pair")
+        let text = match cx.view.source.photographs {
+            true => "Use all pairs of the folder, or step to a pair and capture it.",
+            false => "Use all pairs of the recording, or step to a pair and capture it.",
+        };
+        Message::new("No pairs yet", text).button("Capture pair")
     } else {
         Message::new("No pairs yet", "Hold the board into both eyes and capture, at least ten times.")
             .button("Capture pair")

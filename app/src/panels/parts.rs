@@ -1,12 +1,13 @@
 //! What several panels are put together of.
 
-use egui::{Button, Response, RichText, Ui};
-use plumbline_engine::view::JobState;
+use egui::{Button, Response, RichText, Ui, WidgetInfo};
+use plumbline_engine::view::{JobState, Subject};
 use plumbline_engine::{JobId, View};
 use plumbline_widgets::theme::{self, Role};
 
 use super::PanelContext;
 use crate::operator::Action;
+use crate::operator::actions::undo::of_result;
 use crate::operator::words::capitalized;
 
 /// A button of an action, with its reason where it cannot be pressed.
@@ -24,6 +25,18 @@ pub fn action_button(
         cx.outbox.act(action);
     }
     button
+}
+
+/// Undo of what is in use of a kind, as at the foot of the inspector: the same word, and the same is said of it. Not
+/// drawn where there is nothing to take back.
+pub fn undo_button(ui: &mut Ui, cx: &mut PanelContext<'_>, subject: Subject) {
+    let Ok(undo) = of_result(cx.view, subject) else { return };
+    let button = ui.add(Button::new("Undo"));
+    // Each says which one it is of to whoever does not see what stands beside it.
+    button.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, format!("Undo: {}", undo.what)));
+    if button.on_hover_text(capitalized(&undo.help())).clicked() {
+        cx.outbox.send(undo.command);
+    }
 }
 
 /// A sentence that warns.

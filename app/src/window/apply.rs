@@ -16,7 +16,7 @@ use super::dialogs::Question;
 use super::jogging::RENEW;
 use super::settings::ThemeChoice;
 use crate::operator::actions::timeline::newest as newest_undo;
-use crate::operator::actions::undo::{Undo, undo};
+use crate::operator::actions::undo::undo;
 use crate::operator::guidance::guidance;
 use crate::operator::{
     Action, CommissionAction, DetectAction, GapAction, GridAction, LabelsAction, ModelsAction, Outbox,
@@ -134,8 +134,9 @@ impl PlumblineWindow {
             Action::Scores(ScoresAction::ChooseSet) => self.ask_for(ctx, Question::ScoreSet),
             Action::Scores(ScoresAction::ExportCsv) => self.ask_for(ctx, Question::ScoresCsv),
             Action::Timeline(TimelineAction::TakeBack) => {
-                let commands = newest_undo(&self.view).into_iter().flat_map(Undo::commands);
-                commands.for_each(|command| self.send(command));
+                if let Some(undo) = newest_undo(&self.view) {
+                    self.send(undo.command);
+                }
             }
             Action::Timeline(TimelineAction::Report(format)) => {
                 self.ask_for(ctx, Question::SetupReport(format));
@@ -281,7 +282,7 @@ impl PlumblineWindow {
             Ok(undo) => {
                 // It may be the point that goes.
                 self.panels.models.tables.chosen = None;
-                undo.commands().for_each(|command| self.send(command));
+                self.send(undo.command);
             }
             Err(why) => self.notices.say(&format!("Undo: {why}.")),
         }

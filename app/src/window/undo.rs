@@ -20,12 +20,7 @@ pub(super) fn show(view: &View, screen: Screen, ui: &mut Ui, outbox: &mut Outbox
             let button = match &undo {
                 Ok(undo) => {
                     let keys = shortcut_text(ui.ctx(), Action::Undo).unwrap_or_default();
-                    let then = undo.then.as_ref();
-                    let then = then.map_or_else(String::new, |then| format!(" In use then: {then}."));
-                    button.on_hover_text(format!(
-                        "{keys}: takes back {}.{then} Nothing is deleted that was in use.",
-                        undo.what
-                    ))
+                    button.on_hover_text(format!("{keys}: {}", undo.help()))
                 }
                 Err(why) => button.on_disabled_hover_text(capitalized(why)),
             };

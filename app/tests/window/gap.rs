@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
 use plumbline::{PlumblineWindow, Screen, ThemeChoice, WindowSettings};
 use plumbline_engine::gap::sample;
 use plumbline_engine::{Command, Correction, GapCommand, GapModel, TouchCommand, View};
@@ -194,7 +195,11 @@ fn what_was_added_is_in_the_top_line_and_can_be_taken_back() {
     assert!(says(&window, "nominal + 2 effects"));
     click(&mut window, "History");
     assert!(shows(&window, "Side by side"));
-    click(&mut window, "Back to the model before");
+    // Beside the history, in the word that stands at the foot of every screen.
+    window.get_all_by_label_contains("Undo: ").next().expect("a button").click();
+    window.run_steps(3);
+    assert_eq!(asked(&fake), [GapCommand::Undo]);
+    click(&mut window, "Undo");
     assert_eq!(asked(&fake), [GapCommand::Undo]);
 }
 

@@ -127,11 +127,13 @@ fn no_text_is_cut_or_covered_on_any_screen() {
 }
 
 /// Screens that show much.
-pub(super) fn much_to_show() -> [(Screen, View); 14] {
+pub(super) fn much_to_show() -> [(Screen, View); 16] {
     [
         (Screen::Mount, View { mount: made_up::mount().into(), ..made_up::everything() }),
         (Screen::Touch, made_up_touch::with_touch(made_up_touch::running())),
         (Screen::Touch, made_up_touch::with_touch(made_up_touch::after(12, made_up_touch::running().phase))),
+        (Screen::Models, made_up_models::with(made_up_models::recorded())),
+        (Screen::Models, made_up_models::with(made_up_models::training())),
         (Screen::Models, made_up_models::with(made_up_models::trained())),
         (Screen::Models, made_up_models::with(made_up_models::in_use())),
         (Screen::Gap, made_up_gap::searching()),

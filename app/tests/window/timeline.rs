@@ -7,9 +7,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use plumbline::{PlumblineWindow, Screen, ThemeChoice, WindowSettings};
 use plumbline_engine::view::{EntryKind, Figure, InUseNow, Subject, TimelineEntry, TimelineView};
-use plumbline_engine::{
-    Command, EyesCommand, MountCommand, TimelineCommand, TimelineFormat, TouchCommand, View,
-};
+use plumbline_engine::{Command, EyesCommand, TimelineCommand, TimelineFormat, View};
 
 use crate::fake::{Fake, click, picture_folder, says, shows};
 use crate::made_up;
@@ -91,7 +89,7 @@ fn it_is_reached_by_the_rail_and_says_when_there_is_nothing() {
 #[test]
 fn each_entry_says_its_error_and_what_is_in_use_is_listed() {
     let (_, window) = window_of(results());
-    for text in ["5.88 → 0.970 mm", "5.93 → 0.930 mm", "0.214 → 0.0820 px", "calibration of 31 pairs"] {
+    for text in ["5.88 → 0.97 mm", "5.93 → 0.93 mm", "0.214 → 0.0820 px", "calibration of 31 pairs"] {
         assert!(says(&window, text), "{text}");
     }
     assert!(says(&window, "the robot as it is described"));
@@ -115,21 +113,42 @@ fn what_was_put_in_use_last_of_a_kind_is_taken_back_and_an_earlier_one_is_used_a
         sent.extend(fake.take_sent());
     }
     let back = |subject, to: Option<&str>| -> Command {
-        TimelineCommand::TakesBack { subject, to: to.map(str::to_owned) }.into()
+        TimelineCommand::TakeBack { subject, to: to.map(str::to_owned) }.into()
     };
     assert_eq!(
         sent,
-        [
-            back(Subject::Screen, None),
-            TouchCommand::UseNominalPlacement.into(),
-            back(Subject::Mount, None),
-            MountCommand::UseNominal.into(),
-            back(Subject::Eyes, Some("id-1")),
-            EyesCommand::UseEarlier { id: Some("id-1".to_owned()) }.into(),
-        ]
+        [back(Subject::Screen, None), back(Subject::Mount, None), back(Subject::Eyes, Some("id-1")),]
     );
     click(&mut window, "Use again: calibration of 14 pairs");
     assert_eq!(fake.take_sent(), [Command::from(EyesCommand::UseEarlier { id: Some("id-1".to_owned()) })]);
+}
+
+#[test]
+fn what_was_only_measured_stands_there_with_its_share_and_has_no_undo() {
+    let share = |share| Some(Figure::Share(share));
+    let kinds = [
+        (Subject::Health, "still good", [None, Some(Figure::Meters(4e-3))]),
+        (
+            Subject::Places,
+            "tomato at 36 of 36 places",
+            [Some(Figure::Meters(36e-3)), Some(Figure::Meters(6e-3))],
+        ),
+        (Subject::Experiment, "suggested and made: a weight", [None, Some(Figure::Meters(5e-3))]),
+        (Subject::Grasps, "tomato lifted: M1 30 %, M5 90 %", [share(0.3), share(0.9)]),
+        (Subject::Detectors, "yolo.onnx 71.2 %", [None, share(0.712)]),
+    ];
+    let entries = kinds.iter().enumerate().map(|(k, (subject, title, errors))| TimelineEntry {
+        kind: EntryKind::Measured,
+        ..entry(k as u64 + 1, *subject, title, *errors)
+    });
+    let entries = entries.collect();
+    let (_, window) = window_of(TimelineView { is_known: true, entries, ..TimelineView::default() });
+    for (_, title, _) in kinds {
+        assert!(says(&window, title), "{title}");
+    }
+    assert!(says(&window, "30 → 90 %") && says(&window, "36.0 → 6.00 mm"));
+    assert_eq!(window.query_all_by_label_contains("Undo: ").count(), 0);
+    assert_eq!(window.query_all_by_label_contains("Use again: ").count(), 0);
 }
 
 #[test]

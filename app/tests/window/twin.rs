@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use plumbline::{Screen, ThemeChoice, WindowSettings};
-use plumbline_engine::view::{BoardTour, CollectedPair, EyesView, SourceStatus, SourceView, TwinView};
+use plumbline_engine::view::{
+    BoardTour, CaptureEnded, CollectedPair, EyesView, SourceStatus, SourceView, TwinView,
+};
 use plumbline_engine::{Command, EyesCommand, RobotCommand, SourceSpec, TwinCommand, View};
 
 use crate::fake::{Fake, click, says, shows};
@@ -121,7 +123,7 @@ fn a_tour_of_the_board_is_counted_and_goes_on_where_it_was_broken_off() {
 }
 
 #[test]
-fn that_accepting_ended_capturing_stands_at_its_switch_and_pairs_say_how_warm_the_eyes_were() {
+fn what_ended_capturing_stands_at_its_switch_and_pairs_say_how_warm_the_eyes_were() {
     let pair = |name: &str| CollectedPair {
         name: name.to_owned(),
         left: None,
@@ -132,7 +134,7 @@ fn that_accepting_ended_capturing_stands_at_its_switch_and_pairs_say_how_warm_th
         taken: None,
     };
     let eyes = EyesView {
-        accepting_ended_capture: true,
+        capture_ended: Some(CaptureEnded::Accepted),
         collected: [Arc::new(pair("first")), Arc::new(pair("later")), Arc::new(pair("file"))].into(),
         minutes_on: [Some(3.0), Some(25.0), None].into(),
         ..EyesView::default()
@@ -141,7 +143,10 @@ fn that_accepting_ended_capturing_stands_at_its_switch_and_pairs_say_how_warm_th
     let ended = "Capturing by itself ended when the calibration was accepted";
     let window = over(eyes.clone()).window_of_size(on(Screen::Collect), TALL);
     assert!(says(&window, ended) && says(&window, "cold, 3 min") && says(&window, "warm, 25 min"));
-    let plain = EyesView { accepting_ended_capture: false, minutes_on: [None; 3].into(), ..eyes };
+    let of_mount = EyesView { capture_ended: Some(CaptureEnded::MountLooks), ..eyes.clone() };
+    let window = over(of_mount).window_of_size(on(Screen::Collect), TALL);
+    assert!(!says(&window, ended) && says(&window, "ended when the head began to turn for the mount"));
+    let plain = EyesView { capture_ended: None, minutes_on: [None; 3].into(), ..eyes };
     let window = over(plain).window_of_size(on(Screen::Collect), TALL);
     assert!(shows(&window, "later") && !says(&window, ended));
     assert!(!says(&window, "cold, 3") && !says(&window, "warm, 25"), "what is not known is not said");

@@ -6,7 +6,7 @@ use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use plumbline::{Screen, WindowSettings};
 use plumbline_engine::view::{EyesView, Subject};
-use plumbline_engine::{Command, EyesCommand, MountCommand, TimelineCommand, TouchCommand, View};
+use plumbline_engine::{Command, EyesCommand, TimelineCommand, View};
 
 use crate::fake::{Fake, click, says, shows};
 use crate::timeline::results;
@@ -23,17 +23,16 @@ fn with_results() -> View {
     }
 }
 
-/// What Undo asks for on each screen that has something to take back; the timeline is told first where a result is.
+/// What Undo asks for on each screen that has something to take back: one command, of a result the timeline's.
 fn wanted() -> [(Screen, Vec<Command>); 5] {
-    let id = Some("id-1".to_owned());
-    let back = |subject, to: &Option<String>| -> Command {
-        TimelineCommand::TakesBack { subject, to: to.clone() }.into()
+    let back = |subject, to: Option<String>| -> Vec<Command> {
+        vec![TimelineCommand::TakeBack { subject, to }.into()]
     };
-    let screen = vec![back(Subject::Screen, &None), TouchCommand::UseNominalPlacement.into()];
+    let screen = back(Subject::Screen, None);
     [
         (Screen::Collect, vec![EyesCommand::Undo.into()]),
-        (Screen::Accept, vec![back(Subject::Eyes, &id), EyesCommand::UseEarlier { id }.into()]),
-        (Screen::Mount, vec![back(Subject::Mount, &None), MountCommand::UseNominal.into()]),
+        (Screen::Accept, back(Subject::Eyes, Some("id-1".to_owned()))),
+        (Screen::Mount, back(Subject::Mount, None)),
         (Screen::Touch, screen.clone()),
         (Screen::Timeline, screen),
     ]

@@ -353,7 +353,7 @@ impl Action {
             Self::UseSeenBoard => "Use the recognized board",
             Self::Capture => "Capture pair",
             Self::ToggleAutoCapture => "Capture by itself",
-            Self::CollectRecording => "Use all pairs of the recording",
+            Self::CollectRecording => "Use all pairs of the folder or recording",
             Self::DeleteLast => "Delete the last pair",
             Self::DeleteAll => "Delete all pairs",
             Self::Undo => "Undo",

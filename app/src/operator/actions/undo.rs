@@ -11,6 +11,7 @@ use plumbline_engine::{
 
 use super::{GapAction, LabelsAction, ModelsAction};
 use crate::operator::Screen;
+use crate::operator::words::clock;
 
 /// What is taken back.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,21 +22,20 @@ pub struct Undo {
     pub what: String,
     /// What is in use then, within a sentence; `None`: who takes it back knows.
     pub then: Option<String>,
-    /// Who takes it back.
+    /// What is sent.
     pub command: Command,
-    /// What the timeline is told before, where it keeps the order.
-    mark: Option<TimelineCommand>,
 }
 
 impl Undo {
-    /// Of what is only edited, or of whose order its workflow knows.
-    fn of_workflow(of: &'static str, what: &str, command: impl Into<Command>) -> Self {
-        Self { of, what: what.to_owned(), then: None, command: command.into(), mark: None }
+    /// What it does, two or three sentences; the first begins small.
+    pub fn help(&self) -> String {
+        let then = self.then.as_ref().map_or_else(String::new, |then| format!(" In use then: {then}."));
+        format!("takes back {}.{then} Nothing is deleted that was in use.", self.what)
     }
 
-    /// What is to be sent, in this order.
-    pub fn commands(self) -> impl Iterator<Item = Command> {
-        self.mark.map(Command::from).into_iter().chain([self.command])
+    /// Of what is only edited, or of whose order its workflow knows.
+    fn of_workflow(of: &'static str, what: &str, command: impl Into<Command>) -> Self {
+        Self { of, what: what.to_owned(), then: None, command: command.into() }
     }
 }
 
@@ -103,7 +103,12 @@ pub fn of_result(view: &View, subject: Subject) -> Result<Undo, NoUndo> {
     let of_workflow = |command| Undo::of_workflow(subject.name(), &what, command);
     match subject {
         Subject::Correction => {
-            workflow(ModelsAction::Undo.refusal(view), ModelsCommand::Undo).map(of_workflow)
+            let command = workflow(ModelsAction::Undo.refusal(view), ModelsCommand::Undo)?;
+            let then = view.models.earlier.first().map(|before| match before.method {
+                Some(method) => format!("{} of {}", method.name(), clock(before.accepted)),
+                None => "no model".to_owned(),
+            });
+            Ok(Undo { then, ..of_workflow(command) })
         }
         Subject::Effects => workflow(GapAction::Undo.refusal(view), GapCommand::Undo).map(of_workflow),
         Subject::Eyes | Subject::Mount | Subject::Screen => {
@@ -112,14 +117,18 @@ pub fn of_result(view: &View, subject: Subject) -> Result<Undo, NoUndo> {
             }
             let nothing = "nothing was in use before that is known";
             let to = before(&view.timeline.entries, subject).ok_or(nothing)?;
-            let command = back_to(subject, to).ok_or(nothing)?;
-            let mark = TimelineCommand::TakesBack { subject, to: to.cloned() };
             let then = title_of(&view.timeline.entries, subject, to);
-            Ok(Undo { then, mark: Some(mark), ..of_workflow(command) })
+            let command = TimelineCommand::TakeBack { subject, to: to.cloned() };
+            Ok(Undo { then, ..of_workflow(command.into()) })
         }
-        Subject::Finding | Subject::Check => {
-            Err("it was only measured, so that there is nothing to take back".into())
-        }
+        Subject::Finding
+        | Subject::Check
+        | Subject::Touches
+        | Subject::Experiment
+        | Subject::Health
+        | Subject::Places
+        | Subject::Grasps
+        | Subject::Detectors => Err("it was only measured, so that there is nothing to take back".into()),
     }
 }
 
@@ -148,7 +157,7 @@ pub fn back_to(subject: Subject, id: Option<&String>) -> Option<Command> {
         (Subject::Mount, None) => MountCommand::UseNominal.into(),
         (Subject::Screen, Some(id)) => TouchCommand::UseEarlierPlacement { id }.into(),
         (Subject::Screen, None) => TouchCommand::UseNominalPlacement.into(),
-        (Subject::Correction | Subject::Effects | Subject::Finding | Subject::Check, _) => return None,
+        _ => return None,
     })
 }
 
@@ -249,7 +258,8 @@ mod tests {
     #[test]
     fn each_screen_takes_back_its_own_and_the_timeline_the_newest() {
         let view = mounted(&["a", "b"]);
-        let back: Command = MountCommand::UseEarlier { id: "a".to_owned() }.into();
+        let to = Some("a".to_owned());
+        let back: Command = TimelineCommand::TakeBack { subject: Subject::Mount, to }.into();
         for screen in [Screen::Mount, Screen::Timeline, Screen::Commission] {
             let undo = undo(&view, screen).expect("a mount is in use");
             assert_eq!((undo.of, &undo.command), ("Mount", &back), "{screen:?}");
@@ -257,12 +267,10 @@ mod tests {
                 (&*undo.what, undo.then.as_deref()),
                 (r#"mount Some("b")"#, Some(r#"mount Some("a")"#))
             );
-            let to = Some("a".to_owned());
-            let mark = TimelineCommand::TakesBack { subject: Subject::Mount, to };
-            assert_eq!(undo.commands().collect::<Vec<_>>(), [mark.into(), back.clone()]);
         }
         let nominal = undo(&mounted(&["a"]), Screen::Mount).expect("a mount is in use");
-        assert_eq!(nominal.command, MountCommand::UseNominal.into());
+        let described = TimelineCommand::TakeBack { subject: Subject::Mount, to: None };
+        assert_eq!(nominal.command, described.into());
         assert_eq!(nominal.then.as_deref(), Some("the mount as it is described"));
         for screen in Screen::ALL
             .into_iter()

@@ -1,7 +1,7 @@
 //! What to do next with touching the screen: one button, named by what it does.
 
 use plumbline_engine::View;
-use plumbline_engine::view::{PlanView, TouchCounts, TouchOutcome, TouchPhase, TouchView};
+use plumbline_engine::view::{Figure, PlanView, Subject, TouchCounts, TouchOutcome, TouchPhase, TouchView};
 use plumbline_model::touch_plan::{Finger, Purpose};
 use plumbline_widgets::format;
 
@@ -176,12 +176,31 @@ fn checked(view: &View, touched: &str) -> Guidance {
         };
     }
     let mean = format::mm(figures.mean_m);
-    let said = format!("{touched} checked: the finger lands {mean} beside the target, on average.");
+    let before = before_check_m(view, figures.mean_m)
+        .map_or_else(String::new, |before_m| format!(", {} without a model", format::mm(before_m)));
+    let said = format!("{touched} checked: the finger lands {mean} beside the target, on average{before}.");
     if touch.correct_with.is_some() {
         return say(format!("{said} It stands on the timeline. Next: grasp."))
             .then("Go to Grasp", Action::Go(Screen::Grasp));
     }
     say(format!("{said} Nothing corrected these targets.")).then("Plan new targets", again)
+}
+
+/// A check on the timeline is the one that is shown when both miss by the same, m.
+const SAME_M: f64 = 1e-9;
+
+/// What the timeline says that the finger missed by before what this check checked, m.
+fn before_check_m(view: &View, mean_m: f64) -> Option<f64> {
+    let mut newest = view.timeline.entries.iter().rev();
+    let check = newest.find(|entry| entry.subject == Subject::Check)?;
+    match (check.before, check.after) {
+        (Some(Figure::Meters(before_m)), Some(Figure::Meters(after_m)))
+            if (after_m - mean_m).abs() < SAME_M =>
+        {
+            Some(before_m)
+        }
+        _ => None,
+    }
 }
 
 fn first(view: &View) -> Guidance {
@@ -200,4 +219,43 @@ fn first(view: &View) -> Guidance {
     }
     say("Plan what shall be touched; planning moves nothing.")
         .then("Plan a first calibration", Action::Touch(TouchAction::Plan(Preset::First)))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use plumbline_engine::view::{EntryKind, TimelineEntry, TimelineView};
+
+    use super::*;
+
+    fn check(before_m: Option<f64>, after_m: f64) -> View {
+        let entry = TimelineEntry {
+            number: 1,
+            at: jiff::Timestamp::UNIX_EPOCH,
+            subject: Subject::Check,
+            kind: EntryKind::Measured,
+            title: "25 touches at new targets, corrected with M3".to_owned(),
+            before: before_m.map(Figure::Meters),
+            after: Some(Figure::Meters(after_m)),
+            basis: String::new(),
+            id_before: None,
+            id_after: Some("session".to_owned()),
+            outside: false,
+            by_undo: false,
+        };
+        let entries = Arc::from([entry]);
+        View {
+            timeline: Arc::new(TimelineView { is_known: true, entries, ..TimelineView::default() }),
+            ..View::default()
+        }
+    }
+
+    #[test]
+    fn what_a_check_is_compared_with_is_of_the_check_that_is_shown() {
+        assert_eq!(before_check_m(&check(Some(5.88e-3), 0.93e-3), 0.93e-3), Some(5.88e-3));
+        assert_eq!(before_check_m(&check(Some(5.88e-3), 0.93e-3), 1.4e-3), None, "another check");
+        assert_eq!(before_check_m(&check(None, 0.93e-3), 0.93e-3), None, "nothing to compare with");
+        assert_eq!(before_check_m(&View::default(), 0.93e-3), None);
+    }
 }

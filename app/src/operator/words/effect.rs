@@ -146,7 +146,7 @@ mod tests {
             is_of_eyes: false,
             moved_m: Some(1.2e-4),
         };
-        assert_eq!(moved(&effect).as_deref(), Some("small, moves the fingertip by 0.120 mm"));
+        assert_eq!(moved(&effect).as_deref(), Some("small, moves the fingertip by 0.12 mm"));
         effect.moved_m = Some(2.5e-3);
         assert_eq!(moved(&effect).as_deref(), Some("moves the fingertip by 2.50 mm"));
         effect.is_of_eyes = true;

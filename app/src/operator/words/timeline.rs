@@ -3,11 +3,12 @@
 use plumbline_engine::view::{EntryKind, Figure, TimelineEntry};
 use plumbline_widgets::format;
 
-/// "0.93 mm" or "0.082 px".
+/// "0.93 mm", "0.082 px" or "84 %".
 pub fn figure(figure: Figure) -> String {
     match figure {
         Figure::Meters(length_m) => format::mm(length_m),
         Figure::Pixels(px) => format::px(px),
+        Figure::Share(share) => format::percent(share),
     }
 }
 
@@ -76,11 +77,13 @@ mod tests {
             outside: true,
             by_undo: false,
         };
-        assert_eq!(errors(&entry), "5.88 → 0.930 mm");
+        assert_eq!(errors(&entry), "5.88 → 0.93 mm");
         assert!(about(&entry).contains("while this program was closed"));
         (entry.before, entry.after) = (None, Some(Figure::Pixels(0.0824)));
         assert!(errors(&entry).ends_with(" px"), "{}", errors(&entry));
-        entry.after = None;
+        (entry.before, entry.after) = (Some(Figure::Share(0.3)), Some(Figure::Share(0.9)));
+        assert_eq!(errors(&entry), format!("30 → {}", figure(Figure::Share(0.9))));
+        (entry.before, entry.after) = (None, None);
         assert_eq!(errors(&entry), "");
     }
 }

@@ -65,6 +65,7 @@ fn error(figure: Option<Figure>) -> String {
     match figure {
         Some(Figure::Meters(length_m)) => mm(Some(length_m)),
         Some(Figure::Pixels(px)) => number(Some(px), 1.0, 4),
+        Some(Figure::Share(share)) => number(Some(share), 100.0, 1),
         None => String::new(),
     }
 }
@@ -73,6 +74,7 @@ fn unit(figure: Option<Figure>) -> String {
     match figure {
         Some(Figure::Meters(_)) => "mm",
         Some(Figure::Pixels(_)) => "px",
+        Some(Figure::Share(_)) => "%",
         None => "",
     }
     .to_owned()

@@ -2,12 +2,12 @@
 
 use egui::{RichText, Ui};
 use plumbline_engine::View;
-use plumbline_engine::view::ShownFinding;
+use plumbline_engine::view::{ShownFinding, Subject};
 use plumbline_widgets::theme::{self, Role, space};
 
 use crate::operator::{Action, GapAction};
 use crate::panels::PanelContext;
-use crate::panels::parts::action_button;
+use crate::panels::parts::{action_button, undo_button};
 
 /// The finding of what was watched, where it is the one that is shown.
 fn finding(view: &View) -> Option<&ShownFinding> {
@@ -41,7 +41,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             action_button(ui, cx, GapAction::Add, "Correct from now on");
         }
         if found.is_some_and(|found| found.added.iter().any(|added| *added)) {
-            action_button(ui, cx, GapAction::Undo, "Take it back");
+            undo_button(ui, cx, Subject::Effects);
         }
         let text = if found.is_some() { "Explain anew" } else { "Explain" };
         action_button(ui, cx, Action::ExplainDrift, text);

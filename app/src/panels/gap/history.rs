@@ -2,7 +2,7 @@
 
 use egui::{Button, RichText, ScrollArea, Ui, vec2};
 use plumbline_engine::GapCommand;
-use plumbline_engine::view::{AddedEffect, FindingEntry, GapModelView};
+use plumbline_engine::view::{AddedEffect, FindingEntry, GapModelView, Subject};
 use plumbline_widgets::format::Quantity;
 use plumbline_widgets::intervals::{IntervalRow, Intervals, Level};
 use plumbline_widgets::parameter;
@@ -12,7 +12,7 @@ use crate::operator::GapAction;
 use crate::operator::words::effect::moved;
 use crate::operator::words::gap as words;
 use crate::operator::words::{capitalized, clock};
-use crate::panels::parts::action_button;
+use crate::panels::parts::{action_button, undo_button};
 use crate::panels::{PanelContext, padded};
 
 const ROW_HEIGHT: f32 = 26.0;
@@ -24,7 +24,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             model(ui, &gap.model);
             ui.horizontal_wrapped(|ui| {
                 if gap.model.can_undo {
-                    action_button(ui, cx, GapAction::Undo, "Back to the model before");
+                    undo_button(ui, cx, Subject::Effects);
                 }
                 if !gap.model.effects.is_empty() {
                     action_button(ui, cx, GapAction::Prove, "Prove it");

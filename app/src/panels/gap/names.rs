@@ -1,7 +1,7 @@
 //! What is missing, by name: the verdict, and cards of the effects that were found.
 
 use egui::{Checkbox, Frame, Margin, RichText, ScrollArea, Ui};
-use plumbline_engine::view::ShownFinding;
+use plumbline_engine::view::{ShownFinding, Subject};
 use plumbline_engine::{GapCommand, View};
 use plumbline_widgets::format;
 use plumbline_widgets::glyph::Glyph;
@@ -16,7 +16,7 @@ use crate::operator::words::effect::runner_up;
 use crate::operator::words::gap as words;
 use crate::operator::words::proof::{Proof, Worth};
 use crate::operator::words::sentence;
-use crate::panels::parts::action_button;
+use crate::panels::parts::{action_button, undo_button};
 use crate::panels::{PanelContext, padded};
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
@@ -250,7 +250,7 @@ fn add(ui: &mut Ui, cx: &mut PanelContext<'_>, shown: &ShownFinding) {
             action_button(ui, cx, GapAction::Prove, "Prove it");
         }
         if cx.view.gap.model.can_undo {
-            action_button(ui, cx, GapAction::Undo, "Back to the model before");
+            undo_button(ui, cx, Subject::Effects);
         }
         if !cx.view.gap.model.effects.is_empty() {
             action_button(ui, cx, GapAction::UseNominal, "Take all effects out");

@@ -8,6 +8,9 @@ use crate::operator::snapshot::gap::{NamedEffect, Shown};
 use crate::operator::words::effect as effect_words;
 use crate::operator::words::gap as words;
 
+/// Between the lines of two values that stand below each other.
+const ROW_GAP: f32 = 4.0;
+
 /// A value: what is said before it, the value, and how well it is known.
 type Row = [RichText; 3];
 
@@ -73,15 +76,20 @@ fn beside(ui: &mut Ui, effect: &NamedEffect, rows: Vec<Row>) {
 
 /// Each value in lines of its own, as many as it needs.
 fn below(ui: &mut Ui, rows: Vec<Row>) {
-    for row in rows {
-        ui.horizontal_wrapped(|ui| {
-            ui.spacing_mut().item_spacing = egui::vec2(space::S, 2.0);
-            for text in row {
-                if !text.text().is_empty() {
-                    // As a whole: a text that is broken begins under what stands before it.
-                    ui.add(Label::new(text).extend());
+    ui.vertical(|ui| {
+        // Lines of text, and none as high as a button: what belongs together stands together.
+        ui.spacing_mut().item_spacing.y = ROW_GAP;
+        ui.spacing_mut().interact_size.y = 0.0;
+        for row in rows {
+            ui.horizontal_wrapped(|ui| {
+                ui.spacing_mut().item_spacing = egui::vec2(space::S, 0.0);
+                for text in row {
+                    if !text.text().is_empty() {
+                        // As a whole: a text that is broken begins under what stands before it.
+                        ui.add(Label::new(text).extend());
+                    }
                 }
-            }
-        });
-    }
+            });
+        }
+    });
 }

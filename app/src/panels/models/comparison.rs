@@ -2,7 +2,7 @@
 
 use egui::{Grid, RichText, ScrollArea, Ui};
 use plumbline_engine::ModelsCommand;
-use plumbline_engine::view::{ModelsView, StepState};
+use plumbline_engine::view::{ModelsView, StepState, Subject};
 use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::glyph::{self, Glyph};
@@ -14,7 +14,7 @@ use super::verdict::Facts;
 use crate::operator::snapshot::models::{CorrectionModel, Method};
 use crate::operator::words::clock;
 use crate::operator::{Action, ModelsAction};
-use crate::panels::parts::action_button;
+use crate::panels::parts::{action_button, undo_button};
 use crate::panels::{PanelContext, padded};
 
 /// The line of the spread of repeats. What it is an rms of stands beside means, so it says so.
@@ -195,14 +195,7 @@ fn in_use(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     };
     ui.label(said);
     ui.horizontal_wrapped(|ui| {
-        if let Some(before) = models.earlier.first() {
-            let at = clock(before.accepted);
-            let text = match before.method {
-                Some(method) => format!("Undo: back to {} of {at}", method.name()),
-                None => "Undo: back to no model".to_owned(),
-            };
-            action_button(ui, cx, ModelsAction::Undo, &text);
-        }
+        undo_button(ui, cx, Subject::Correction);
         if models.in_use.is_some() {
             action_button(ui, cx, ModelsAction::UseNone, "Use none");
         }

@@ -20,12 +20,11 @@ const ROWS: usize = 4;
 const ROW_HEIGHT: f32 = 28.0;
 
 pub(super) fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
-    ui.horizontal(|ui| {
+    // In a narrow tile the buttons stand below the heading.
+    ui.horizontal_wrapped(|ui| {
         ui.label(theme::strong(ui, "Touches"));
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            action_button(ui, cx, ModelsAction::OpenSession, "Open folder…");
-            action_button(ui, cx, ModelsAction::ListSessions, "Look again");
-        });
+        action_button(ui, cx, ModelsAction::ListSessions, "Look again");
+        action_button(ui, cx, ModelsAction::OpenSession, "Open folder…");
     });
     let sessions = cx.view.models.sessions.clone();
     let height = ROW_HEIGHT * sessions.len().clamp(1, ROWS) as f32 + space::XS;

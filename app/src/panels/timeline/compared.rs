@@ -1,7 +1,7 @@
 //! Two entries side by side.
 
 use egui::{Grid, ScrollArea, Ui};
-use plumbline_engine::view::TimelineEntry;
+use plumbline_engine::view::{Figure, TimelineEntry};
 use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::theme::{self, space};
 
@@ -53,15 +53,19 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
 /// What became of the error from the older to the newer.
 fn difference(first: &TimelineEntry, second: &TimelineEntry) -> String {
     match (first.after, second.after) {
+        (Some(Figure::Share(_)), Some(Figure::Share(_))) if first.subject != second.subject => {
+            "Shares of different things: they cannot be compared.".to_owned()
+        }
+        (Some(a @ Figure::Share(_)), Some(b @ Figure::Share(_))) => {
+            format!("{} → {}, each on its own data.", figure(a), figure(b))
+        }
         (Some(a), Some(b)) if a.is_like(b) && a.value() > 0.0 => {
             let share = b.value() / a.value();
             let data =
                 if first.subject == second.subject { "each on its own data" } else { "of different things" };
             format!("{} → {}: {:.0} % of the error, {data}.", figure(a), figure(b), share * 100.0)
         }
-        (Some(_), Some(_)) => {
-            "One error is a length, the other is in pixels: they cannot be compared.".to_owned()
-        }
+        (Some(_), Some(_)) => "The figures have different units: they cannot be compared.".to_owned(),
         _ => "One of them has no error that is known.".to_owned(),
     }
 }

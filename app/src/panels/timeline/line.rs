@@ -7,8 +7,8 @@ use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::theme::{self, Role, space};
 
 use crate::operator::actions::timeline::{take_back, use_again};
-use crate::operator::words::clock;
 use crate::operator::words::timeline as words;
+use crate::operator::words::{capitalized, clock};
 use crate::panels::{PanelContext, padded};
 
 const ROW_HEIGHT: f32 = 46.0;
@@ -112,23 +112,20 @@ fn text(ui: &mut Ui, cx: &mut PanelContext<'_>, entry: &TimelineEntry) {
     }
 }
 
-/// Whether the error got smaller, on figures that can be compared.
+/// Whether the error got smaller, or the share larger, on figures that can be compared.
 fn is_better(entry: &TimelineEntry) -> bool {
     let both = entry.before.zip(entry.after);
-    both.is_some_and(|(before, after): (Figure, Figure)| {
-        before.is_like(after) && after.value() < before.value()
-    })
+    both.is_some_and(|(before, after): (Figure, Figure)| after.is_better_than(before))
 }
 
 fn undo_button(ui: &mut Ui, cx: &mut PanelContext<'_>, entry: &TimelineEntry) {
-    let (commands, label, help) = match (take_back(cx.view, entry), use_again(cx.view, entry)) {
+    let (command, label, help) = match (take_back(cx.view, entry), use_again(cx.view, entry)) {
         (Some(undo), _) => {
-            let then = undo.then.as_deref().unwrap_or("what was in use before");
-            let help = format!("In use then: {then}. Nothing is deleted.");
-            (undo.commands().collect(), "Undo", help)
+            let help = capitalized(&undo.help());
+            (undo.command, "Undo", help)
         }
         (None, Some(command)) => {
-            (vec![command], "Use again", "Puts this in use again. Nothing is deleted.".to_owned())
+            (command, "Use again", "Puts this in use again. Nothing is deleted.".to_owned())
         }
         (None, None) => return,
     };
@@ -138,6 +135,6 @@ fn undo_button(ui: &mut Ui, cx: &mut PanelContext<'_>, entry: &TimelineEntry) {
         WidgetInfo::labeled(egui::Role::Button, true, format!("{label}: {}", words::title(entry)))
     });
     if button.on_hover_text(help).clicked() {
-        commands.into_iter().for_each(|command| cx.outbox.send(command));
+        cx.outbox.send(command);
     }
 }

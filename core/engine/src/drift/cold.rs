@@ -45,7 +45,7 @@ fn from_cold(around: &DriftAround) -> Option<String> {
     let (kind, held_at_s) = around.model.added().effects().iter().find_map(counted_cold)?;
     Some(format!(
         "An effect in use ({}) counts from cold eyes, and the eyes were calibrated {:.0} min after they were switched \
-         on: what they had turned until then is corrected twice. Take it back on the screen Gap, and explain again.",
+         on: what they had turned until then is corrected twice. Undo it on the screen Gap, and explain again.",
         kind.about(),
         held_at_s / 60.0
     ))

@@ -68,6 +68,20 @@ impl Figures {
         }
     }
 
+    /// Mean errors of a session as the description and as the model in use have it, m; `None`: both are not shown, or
+    /// are being judged.
+    pub fn both_m(&self, session: &Path) -> Option<[f64; 2]> {
+        if self.judging.iter().any(Option::is_some) {
+            return None;
+        }
+        let of = |correction| {
+            let is_it = |shown: &&GridFigure| shown.session == session && shown.correction == correction;
+            let judged = self.shown.iter().flatten().find(is_it)?.judged.as_ref()?;
+            Some(judged.as_ref().ok()?.errors.mean_m)
+        };
+        Some([of(GridCorrection::Described)?, of(GridCorrection::Model)?])
+    }
+
     /// Judged, or why not.
     pub fn judged(&mut self, id: JobId, judged: &Result<Arc<Judged>, Unjudged>) {
         for (judging, shown) in self.judging.iter_mut().zip(&mut self.shown) {

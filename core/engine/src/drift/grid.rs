@@ -12,6 +12,7 @@ use plumbline_model::{Point, Robot};
 use super::DriftAround;
 use super::view::{GridDoing, GridRunView};
 use super::work::{Context, DriftWork};
+use crate::ground::World;
 use crate::ground::jobs::JobId;
 use crate::twin::command::TwinCommand;
 
@@ -46,6 +47,10 @@ enum Stage {
 pub(super) struct GridRun {
     thing: Thing,
     began: Timestamp,
+    /// Whose eyes look.
+    pub world: Option<World>,
+    /// Toys of the twin that stood on the table before, and where (x, y), m.
+    stood: Vec<(String, [f64; 2])>,
     at: usize,
     stage: Stage,
     rows: Vec<LocalizationRow>,
@@ -70,6 +75,8 @@ impl GridRun {
         let mut run = Self {
             thing,
             began: context.time.day,
+            world: around.world,
+            stood: Vec::new(),
             at: 0,
             stage: Stage::Asks,
             rows: Vec::new(),
@@ -83,9 +90,13 @@ impl GridRun {
         };
         if let Some(twin) = &around.twin {
             context.control(TwinCommand::HideBoard.into());
-            let others = twin.toys.iter().filter(|toy| toy.place.is_some());
-            for toy in others.filter(|toy| !toy.name.eq_ignore_ascii_case(thing.class)) {
-                context.control(TwinCommand::RemoveToy { toy: toy.name.clone() }.into());
+            let stood = twin.toys.iter().filter_map(|toy| {
+                let at_m = toy.place?.coords;
+                Some((toy.name.clone(), [at_m.x, at_m.y]))
+            });
+            run.stood = stood.collect();
+            for (toy, _) in run.stood.iter().filter(|(toy, _)| !toy.eq_ignore_ascii_case(thing.class)) {
+                context.control(TwinCommand::RemoveToy { toy: toy.clone() }.into());
             }
         }
         run.go_to(0, around, context);
@@ -95,6 +106,25 @@ impl GridRun {
     /// Whether places are still to come.
     pub fn is_under_way(&self) -> bool {
         self.stage != Stage::Ended
+    }
+
+    /// Whether it has ended, and all of it is on disk.
+    pub fn is_on_disk(&self) -> bool {
+        let waits = self.is_newer || self.keeping.is_some() || self.unkept.is_some();
+        !self.is_under_way() && !waits
+    }
+
+    /// Class of the thing.
+    pub fn object(&self) -> &'static str {
+        self.thing.class
+    }
+
+    /// Places at which it was seen, of how many.
+    pub fn seen(&self) -> [usize; 2] {
+        let measured = self.rows.iter().filter(|row| row.valid).map(|row| row.truth);
+        let mut measured: Vec<_> = measured.flatten().map(|at| at.coords.coords.map(f64::to_bits)).collect();
+        measured.dedup();
+        [measured.len(), evaluation_places_m().len()]
     }
 
     /// The thing lies where it was asked for; `false`: nobody asked.
@@ -114,10 +144,19 @@ impl GridRun {
         }
     }
 
-    /// No more places; what was measured stays.
-    pub fn end(&mut self) {
+    /// No more places; what was measured stays, and the toys of the twin stand where they stood before.
+    pub fn end(&mut self, around: &DriftAround, context: &mut Context<'_>) {
         self.stage = Stage::Ended;
         self.looks.clear();
+        let stood = std::mem::take(&mut self.stood);
+        if around.twin.is_none() {
+            return;
+        }
+        let thing = self.thing.class.to_lowercase();
+        context.control(TwinCommand::RemoveToy { toy: thing }.into());
+        for (toy, [x_m, y_m]) in stood {
+            context.control(TwinCommand::PlaceToy { toy: toy.to_lowercase(), x_m, y_m }.into());
+        }
     }
 
     /// A pair has come: what was found in the pairs before is looked at.
@@ -219,7 +258,9 @@ impl GridRun {
     }
 
     fn go_to(&mut self, at: usize, around: &DriftAround, context: &mut Context<'_>) {
-        let Some([x_m, y_m]) = evaluation_places_m().get(at).copied() else { return self.end() };
+        let Some([x_m, y_m]) = evaluation_places_m().get(at).copied() else {
+            return self.end(around, context);
+        };
         self.at = at;
         self.stage = if around.twin.is_some() {
             let toy = self.thing.class.to_lowercase();
@@ -279,17 +320,15 @@ impl GridRun {
             Stage::NotSeen => GridDoing::NotSeen,
             Stage::Ended => GridDoing::Ended,
         };
-        let measured = self.rows.iter().filter(|row| row.valid).map(|row| row.truth);
-        let mut measured: Vec<_> = measured.flatten().map(|at| at.coords.coords.map(f64::to_bits)).collect();
-        measured.dedup();
+        let [measured, of] = self.seen();
         GridRunView {
             object: self.thing.class,
             place: self.at + 1,
-            of: evaluation_places_m().len(),
+            of,
             at_m: evaluation_places_m()[self.at],
             places_by_itself: around.twin.is_some(),
             doing,
-            measured: measured.len(),
+            measured,
             session: self.folder.clone(),
             unkept: self.unkept.as_ref().map(|(_, why)| why.clone()),
         }

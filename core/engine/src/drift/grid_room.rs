@@ -17,6 +17,23 @@ use crate::ground::World;
 use crate::ground::jobs::JobId;
 use crate::ground::sessions::title_of;
 
+/// What an evaluation gave that has ended.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlacesResult {
+    /// Its session.
+    pub session: PathBuf,
+    /// Class of the thing.
+    pub object: &'static str,
+    /// Places at which it was seen.
+    pub measured: usize,
+    /// Of so many.
+    pub of: usize,
+    /// Mean error as the robot is described, m.
+    pub described_m: f64,
+    /// The same by the model in use, m.
+    pub model_m: f64,
+}
+
 /// Everything of it.
 #[derive(Clone, Debug, Default)]
 pub(super) struct GridRoom {
@@ -33,6 +50,15 @@ impl GridRoom {
     pub fn list(&self, data_dir: &Path, context: &mut Context<'_>) {
         let sessions = World::ALL.map(|world| sessions_of(world, data_dir)).to_vec();
         context.start(DriftWork::ListGrids { sessions });
+    }
+
+    /// What the run gave, once it has ended, is on disk and is judged.
+    pub fn result(&self, world: World) -> Option<PlacesResult> {
+        let run = self.run.as_ref().filter(|run| run.is_on_disk() && run.world == Some(world))?;
+        let session = run.folder.clone()?;
+        let [described_m, model_m] = self.figures.both_m(&session)?;
+        let (object, [measured, of]) = (run.object(), run.seen());
+        Some(PlacesResult { session, object, measured, of, described_m, model_m })
     }
 
     /// A pair has come.
@@ -77,7 +103,7 @@ impl GridRoom {
                 None => context.refuse("No evaluation is under way."),
             },
             GridCommand::End => match self.run.as_mut().filter(|run| run.is_under_way()) {
-                Some(run) => run.end(),
+                Some(run) => run.end(around, context),
                 None => context.refuse("No evaluation is under way."),
             },
             GridCommand::Show { side, session, correction } => {

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use plumbline_effects::RobotModel;
-use plumbline_model::Session;
 use plumbline_model::robot::default_rig;
+use plumbline_model::{Point, Session};
 
 use super::command::{DriftCommand, GridCommand};
 use super::view::GridRunView;
@@ -17,7 +17,10 @@ use crate::ground::jobs::list::JobList;
 use crate::ground::notice::Notices;
 use crate::ground::stage::Skipped;
 use crate::ground::{Asked, Context, LongWork as _, Moment, Time, Workflow as _, World};
+use crate::robot::RobotControl;
 use crate::robot::view::{Connection, RobotView};
+use crate::twin::command::TwinCommand;
+use crate::twin::view::{ToyView, TwinView};
 
 struct Desk {
     room: DriftWorkflow,
@@ -27,6 +30,8 @@ struct Desk {
     time: Time,
     /// How often it was tried to write the evaluation.
     tries: usize,
+    /// What the twin was asked for.
+    asked_twin: Vec<TwinCommand>,
 }
 
 impl Desk {
@@ -57,6 +62,7 @@ impl Desk {
             jobs: JobList::default(),
             time: Time::now(),
             tries: 0,
+            asked_twin: vec![],
         }
     }
 
@@ -69,8 +75,10 @@ impl Desk {
         let Self { room, around, notices, jobs, time, .. } = self;
         act(room, around, &mut Context::new(notices, jobs, *time, &mut asked));
         for asked in asked {
-            if let Asked::Start(id, work) = asked {
-                self.run(id, work);
+            match asked {
+                Asked::Start(id, work) => self.run(id, work),
+                Asked::Control(RobotControl::Twin(command)) => self.asked_twin.push(command),
+                _ => {}
             }
         }
     }
@@ -142,4 +150,29 @@ fn a_full_disk_loses_nothing_of_an_evaluation_and_is_told_now_and_then() {
     let tries = desk.tries;
     desk.passes(Duration::from_secs(40));
     assert_eq!(desk.tries, tries, "what is on disk is not written again");
+}
+
+#[test]
+fn toys_that_made_room_for_an_evaluation_stand_where_they_stood_when_it_ends() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let toy = |name: &str, place: Option<[f64; 2]>| ToyView {
+        name: name.to_owned(),
+        place: place.map(|[x_m, y_m]| Point::new(x_m, y_m, 0.03)),
+        radius_m: 0.03,
+        rgb: [200, 30, 30],
+    };
+    let toys = vec![toy("Tomato", Some([0.3, 0.1])), toy("Onion", Some([0.4, -0.1])), toy("Can", None)];
+    let mut desk = Desk::new(folder.path());
+    desk.around.twin = Some(Arc::new(TwinView { running: true, toys, ..TwinView::default() }));
+    desk.ask(GridCommand::Begin { object: "Tomato".to_owned() });
+    let removed = |toy: &str| TwinCommand::RemoveToy { toy: toy.to_owned() };
+    assert!(desk.asked_twin.contains(&removed("Onion")) && !desk.asked_twin.contains(&removed("Can")));
+    desk.asked_twin.clear();
+    desk.ask(GridCommand::End);
+    let placed = |toy: &str, x_m, y_m| TwinCommand::PlaceToy { toy: toy.to_owned(), x_m, y_m };
+    assert_eq!(
+        desk.asked_twin,
+        [removed("tomato"), placed("tomato", 0.3, 0.1), placed("onion", 0.4, -0.1)],
+        "the thing, too; what was put away before stays that"
+    );
 }

@@ -18,6 +18,7 @@ pub mod work;
 mod workflow;
 
 pub use around::{BoardAt, DriftAround};
+pub use grid_room::PlacesResult;
 pub use stage::{DriftInput, DriftOutput, DriftStage};
 pub use unjudged::Unjudged;
 pub use workflow::DriftWorkflow;

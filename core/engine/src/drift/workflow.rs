@@ -9,7 +9,7 @@ use plumbline_model::StereoFrame;
 use super::DriftAround;
 use super::cold::counted_twice;
 use super::command::DriftCommand;
-use super::grid_room::GridRoom;
+use super::grid_room::{GridRoom, PlacesResult};
 use super::stage::{DriftInput, DriftOutput};
 use super::view::{DriftCourse, DriftView};
 use super::watch::{EVERY, FIRST, Watch};
@@ -19,7 +19,7 @@ use crate::ground::jobs::JobId;
 use crate::ground::notice::NoticeLevel;
 use crate::ground::stage::Timed;
 use crate::ground::step::StepState;
-use crate::ground::{Moment, Time, Workflow};
+use crate::ground::{Moment, Time, Workflow, World};
 use crate::robot::RobotControl;
 
 /// Times before and after are of different clocks.
@@ -47,6 +47,11 @@ pub struct DriftWorkflow {
 }
 
 impl DriftWorkflow {
+    /// What the 9 by 4 evaluation gave that ended in a world; `None`: none did, or it is not judged yet.
+    pub fn places_result(&self, world: World) -> Option<PlacesResult> {
+        self.grid.result(world)
+    }
+
     /// Whether it watches.
     pub fn is_watching(&self) -> bool {
         self.watch.is_some()

@@ -60,7 +60,7 @@ impl EyesWorkflow {
 
     pub(super) fn set_auto_capture(&mut self, on: bool, around: &EyesAround, context: &mut Context<'_>) {
         self.auto_capture = on;
-        self.accepting_ended_capture = false;
+        self.capture_ended = None;
         // A picture that stands still is looked at only once: it may be worth capturing now.
         if let Some(look) = self.last_look.take().filter(|_| on) {
             self.look(look, around, context);

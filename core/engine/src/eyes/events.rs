@@ -10,7 +10,7 @@ use super::collection::Collection;
 use super::coverage::Novelty;
 use super::look::Look;
 use super::times::taken;
-use super::view::{CaptureHint, CollectedPair, Origin, Proposal};
+use super::view::{CaptureEnded, CaptureHint, CollectedPair, Origin, Proposal};
 use super::work::{Accepted, Captured, Collected, Context, EyesWork, Keep, Opened, Restored, Solved};
 use super::workflow::{EyesAround, EyesWorkflow};
 use super::{auto_capture, coverage};
@@ -161,8 +161,7 @@ impl EyesWorkflow {
             (self.proposal, self.solved_from) = (None, None);
         }
         // The board lies there for the mount next: what the eyes see of it then is none of their pairs.
-        self.accepting_ended_capture |= self.auto_capture;
-        self.auto_capture = false;
+        self.end_auto_capture(CaptureEnded::Accepted);
         self.in_use = Some(Arc::new(accepted.in_use));
         self.is_known = true;
         self.earlier = accepted.earlier.into();

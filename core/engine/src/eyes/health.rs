@@ -4,6 +4,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use jiff::Timestamp;
 use plumbline_model::{StereoCalibration, StereoFrame};
 
 use super::health_by_itself::ByItself;
@@ -81,6 +82,8 @@ pub(super) struct HealthRoom {
     ended: Option<(Of, HealthState)>,
     /// What was judged last: it stands while it is looked at again, and when nothing comes of that.
     judged: Option<(Of, Arc<EyesHealth>)>,
+    /// What was judged and told last, and when: what nobody asked for and is as it was is not told.
+    told: Option<(Timestamp, Arc<EyesHealth>)>,
 }
 
 impl EyesWorkflow {
@@ -242,12 +245,19 @@ impl EyesWorkflow {
         self.rest(busy, context.time.instant);
         if let HealthState::Judged(health) = &state {
             self.health.judged = Some((of.clone(), health.clone()));
-            self.tell_of_health(&of, health, ask, context);
+            if self.tell_of_health(&of, health, ask, context) || !ask.by_itself {
+                self.health.told = Some((context.time.day, health.clone()));
+            }
         }
         // That nothing is seen at night is no news where nobody has asked.
         if !ask.by_itself || matches!(state, HealthState::Judged(_)) || !self.has_ended(&of) {
             self.health.ended = Some((of, state));
         }
+    }
+
+    /// What was judged and told last, and when.
+    pub fn told_health(&self) -> Option<(Timestamp, Arc<EyesHealth>)> {
+        self.health.told.clone()
     }
 
     /// Whether these were judged.

@@ -113,14 +113,14 @@ impl EyesWorkflow {
         by_itself.due = Some(now + PERIOD.max(busy.div_f64(MOST_SHARE)));
     }
 
-    /// Says once that the calibration in use does not hold any more, and that it does again.
+    /// Says once that the calibration in use does not hold any more, and that it does again; whether it did.
     pub(super) fn tell_of_health(
         &mut self,
         of: &Of,
         health: &EyesHealth,
         ask: Ask,
         context: &mut Context<'_>,
-    ) {
+    ) -> bool {
         let by_itself = &mut self.health.by_itself;
         let is_told = by_itself.told.as_ref().is_some_and(|told| Arc::ptr_eq(told, &of.in_use));
         if health.in_use.is_good {
@@ -129,7 +129,7 @@ impl EyesWorkflow {
                 by_itself.told = None;
                 context.notices.add(NoticeLevel::Info, "The calibration of the eyes holds again.");
             }
-            return;
+            return is_told;
         }
         // How another one looked is none of its doing.
         let before = by_itself.bad.take().filter(|(bad, _)| Arc::ptr_eq(bad, &of.in_use));
@@ -141,7 +141,9 @@ impl EyesWorkflow {
         } else if times >= BAD_IN_A_ROW && !is_told {
             by_itself.told = Some(of.in_use.clone());
             context.notices.add(NoticeLevel::Warning, does_not_hold(health));
+            return true;
         }
+        false
     }
 }
 

@@ -26,7 +26,7 @@ impl EyesWorkflow {
             minutes_since_on,
             board_seen: self.board_seen.clone(),
             auto_capture: self.auto_capture,
-            accepting_ended_capture: self.accepting_ended_capture,
+            capture_ended: self.capture_ended,
             hint: self.hint.clone(),
             collected: self.derived.collected.clone(),
             minutes_on: self.minutes_of_each(),

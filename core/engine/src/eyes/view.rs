@@ -15,6 +15,15 @@ use super::map::TableMap;
 use crate::ground::jobs::JobId;
 use crate::ground::step::StepState;
 
+/// Why pairs are not captured without asking any more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CaptureEnded {
+    /// A calibration was accepted.
+    Accepted,
+    /// The mount looks at the board, from where the head turns: what it sees is none of the eyes' pairs.
+    MountLooks,
+}
+
 /// The whole workflow.
 #[derive(Clone, Debug)]
 pub struct EyesView {
@@ -33,8 +42,8 @@ pub struct EyesView {
     pub board_seen: Option<BoardSeen>,
     /// Whether pairs are captured without asking.
     pub auto_capture: bool,
-    /// Whether that was switched off because a calibration was accepted.
-    pub accepting_ended_capture: bool,
+    /// Why that was switched off although nobody asked for it; `None`: it was not.
+    pub capture_ended: Option<CaptureEnded>,
     /// What capturing waits for; `None` without an image.
     pub hint: Option<CaptureHint>,
     /// Pairs in the order of capture.
@@ -292,7 +301,7 @@ impl Default for EyesView {
             minutes_since_on: None,
             board_seen: None,
             auto_capture: false,
-            accepting_ended_capture: false,
+            capture_ended: None,
             hint: None,
             collected: Arc::from([]),
             minutes_on: Arc::from([]),

@@ -20,8 +20,8 @@ use super::look::Look;
 use super::place::{nominal_cameras, place_of, rough_pose};
 use super::store::Store;
 use super::view::{
-    AcceptedCalibration, BoardPlace, BoardSeen, CaptureHint, CollectedPair, Coverage, EarlierCalibration,
-    EyesView, GhostBoard, Origin, Proposal, Taken,
+    AcceptedCalibration, BoardPlace, BoardSeen, CaptureEnded, CaptureHint, CollectedPair, Coverage,
+    EarlierCalibration, EyesView, GhostBoard, Origin, Proposal, Taken,
 };
 use super::work::{Context, EyesResult, EyesWork, OpenWhat, Restore};
 use super::{coverage, ghost};
@@ -68,8 +68,8 @@ pub struct EyesWorkflow {
     /// When the pair was taken that is being searched.
     pub(super) capturing_taken: Option<Taken>,
     pub(super) auto_capture: bool,
-    /// Whether that was switched off because a calibration was accepted.
-    pub(super) accepting_ended_capture: bool,
+    /// Why that was switched off although nobody asked for it.
+    pub(super) capture_ended: Option<CaptureEnded>,
     pub(super) auto: AutoCapture,
     /// The newest look, for when capturing is switched on.
     pub(super) last_look: Option<Look>,
@@ -148,6 +148,13 @@ impl EyesWorkflow {
     /// Whether pairs are captured without asking, for which the board must be looked for.
     pub fn auto_capture(&self) -> bool {
         self.auto_capture
+    }
+
+    /// Pairs are captured only when asked for from now on.
+    pub fn end_auto_capture(&mut self, why: CaptureEnded) {
+        if std::mem::take(&mut self.auto_capture) {
+            self.capture_ended = Some(why);
+        }
     }
 
     /// The calibration in use.
@@ -283,7 +290,7 @@ impl Workflow for EyesWorkflow {
             clocks_before: Vec::new(),
             capturing_taken: None,
             auto_capture: false,
-            accepting_ended_capture: false,
+            capture_ended: None,
             auto: AutoCapture::default(),
             last_look: None,
             hint: None,

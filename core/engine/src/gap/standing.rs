@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use plumbline_gap::finding::NextExperiment;
+
 use super::view::{AddedEffect, ShownFinding};
 use super::workflow::GapWorkflow;
 
@@ -11,6 +13,11 @@ impl GapWorkflow {
     pub fn found(&self) -> Option<(&Arc<ShownFinding>, bool)> {
         let shown = self.seen.shown.as_ref().filter(|_| self.stale().is_none())?;
         Some((shown, !shown.addable().is_empty() || self.seen.sizes_arm))
+    }
+
+    /// What the finding that is shown suggests to be measured next, whether it tells about now or not.
+    pub fn suggested(&self) -> Option<&NextExperiment> {
+        self.seen.shown.as_ref()?.finding.next.as_ref()
     }
 
     /// Findings that are kept, newest first.

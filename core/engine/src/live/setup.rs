@@ -53,9 +53,10 @@ impl LiveSetup {
         place.ok_or(NoPlace)
     }
 
-    /// Why the uncertainty of places is wide, and what to do; `None`: all that they rest on was measured.
+    /// Why the uncertainty of places is wide, or what it leaves out, and what to do; `None`: all that they rest on was
+    /// measured, and says how well it is known.
     pub fn wide_because(&self) -> Option<&'static str> {
-        wide_because(self.model.unmeasured())
+        wide_because(self.model.unmeasured(), self.calibration.covariance.is_some())
     }
 
     /// Where the left eye is.

@@ -1,13 +1,15 @@
-//! Why places in the robot's frame are stated with a wide uncertainty while something was not measured.
+//! Why places in the robot's frame are stated with a wide uncertainty while something was not measured, and that the
+//! uncertainty leaves out what nobody knows.
 
 use plumbline_effects::robot_model::Unmeasured;
 
-/// Why the uncertainty of places in the robot's frame is wide, and what to do: a sentence or two. `None`: all that
-/// they rest on was measured.
-pub fn wide_because(unmeasured: Unmeasured) -> Option<&'static str> {
+/// Why the uncertainty of places in the robot's frame is wide, or what it leaves out, and what to do: two or three
+/// sentences. `None`: all that they rest on was measured, and is as well known as it says. `is_told`: whether the
+/// calibration of the eyes says how well it is known.
+pub fn wide_because(unmeasured: Unmeasured, is_told: bool) -> Option<&'static str> {
     match unmeasured {
-        Unmeasured { mount: false, lenses: false } => None,
-        Unmeasured { mount: true, lenses: false } => Some(MOUNT),
+        Unmeasured { mount: false, lenses: false } => (!is_told).then_some(UNTOLD),
+        Unmeasured { mount: true, lenses: false } => Some(if is_told { MOUNT } else { MOUNT_UNTOLD }),
         Unmeasured { mount: false, lenses: true } => Some(LENSES),
         Unmeasured { mount: true, lenses: true } => Some(BOTH),
     }
@@ -19,6 +21,11 @@ const LENSES: &str = "The ± is wide because these eyes are not calibrated: it h
      Calibrate them in step 1, Eyes.";
 const BOTH: &str = "The ± is wide because neither the eyes are calibrated nor their mount: it holds how far both \
      usually are off. Begin with step 1, Eyes, then step 2, Mount.";
+const UNTOLD: &str = "The ± leaves out how well the eyes are calibrated: the file that the calibration was read from does \
+     not say it. Calibrate them here in step 1, Eyes, and it is in the ±.";
+const MOUNT_UNTOLD: &str = "The ± is wide because nobody measured how the eyes sit in the head: it holds how far that \
+     usually is off. It leaves out how well the eyes are calibrated, which the file of the calibration does not say. \
+     Calibrate them here in step 1, Eyes, then the mount in step 2, Mount.";
 
 #[cfg(test)]
 mod tests {
@@ -26,12 +33,25 @@ mod tests {
 
     #[test]
     fn what_was_not_measured_is_told_with_the_step_that_measures_it_and_what_was_measured_is_not() {
-        let said = |mount, lenses| wide_because(Unmeasured { mount, lenses });
+        let said = |mount, lenses| wide_because(Unmeasured { mount, lenses }, true);
         assert_eq!(said(false, false), None);
         for (mount, lenses) in [(true, false), (false, true), (true, true)] {
             let said = said(mount, lenses).expect("wide");
             assert_eq!(said.contains("step 1, Eyes"), lenses, "{said}");
             assert_eq!(said.contains("step 2, Mount"), mount, "{said}");
         }
+    }
+
+    #[test]
+    fn a_calibration_that_does_not_say_how_well_it_is_known_is_not_passed_off_as_exact() {
+        for mount in [false, true] {
+            let said =
+                wide_because(Unmeasured { mount, lenses: false }, false).expect("something is left out");
+            assert!(said.contains("leaves out how well the eyes are calibrated"), "{said}");
+            assert_eq!(said.contains("step 2, Mount"), mount, "{said}");
+        }
+        // Of eyes that nobody calibrated it holds how far lenses usually are off.
+        let all = |is_told| wide_because(Unmeasured::ALL, is_told);
+        assert_eq!(all(false), all(true));
     }
 }

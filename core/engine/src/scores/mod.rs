@@ -11,4 +11,5 @@ pub mod view;
 pub mod work;
 mod workflow;
 
+pub use evaluation::Evaluation;
 pub use workflow::ScoresWorkflow;

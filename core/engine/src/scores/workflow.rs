@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use jiff::Timestamp;
 use plumbline_vision::detect::shipped_detector;
 
 use super::command::{ConfusionCell, ScoresCommand, SetPart};
@@ -23,12 +24,19 @@ pub struct ScoresWorkflow {
     pub(super) evaluating: Option<JobId>,
     pub(super) failed: Option<String>,
     pub(super) evaluation: Option<Arc<Evaluation>>,
+    /// When it was judged.
+    judged_at: Timestamp,
     opening: Option<JobId>,
     pub(super) cell: Option<Arc<OpenedCell>>,
     pub(super) picture: Option<usize>,
 }
 
 impl ScoresWorkflow {
+    /// What was judged last, and when.
+    pub fn judged(&self) -> Option<(Timestamp, Arc<Evaluation>)> {
+        Some((self.judged_at, self.evaluation.clone()?))
+    }
+
     fn add(&mut self, file: PathBuf) {
         match self.models.iter_mut().find(|model| model.file == file) {
             Some(model) => model.chosen = true,
@@ -106,11 +114,11 @@ impl Workflow for ScoresWorkflow {
         }
     }
 
-    fn work_done(&mut self, id: JobId, result: ScoresResult, _: &Provider, _: &mut Context<'_>) {
+    fn work_done(&mut self, id: JobId, result: ScoresResult, _: &Provider, context: &mut Context<'_>) {
         self.evaluating.take_if(|evaluating| *evaluating == id);
         match result {
             ScoresResult::Evaluated(evaluation) => {
-                self.evaluation = Some(evaluation);
+                (self.evaluation, self.judged_at) = (Some(evaluation), context.time.day);
                 (self.cell, self.picture) = (None, None);
             }
             // Of several that were clicked quickly the last one is shown.

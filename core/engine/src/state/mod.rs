@@ -3,6 +3,7 @@
 mod actions;
 mod commissioned;
 mod looked;
+mod measured;
 mod neighbors;
 mod recorded;
 mod results;
@@ -162,7 +163,8 @@ impl State {
             });
         }
         Neighbors::<W>::after(self, world);
-        self.watch_results(world);
+        // What of no world was measured stands on the line of both.
+        World::ALL.into_iter().for_each(|world| self.watch_results(world));
     }
 
     /// Takes it to be this time, until told otherwise; `None`: the time of the system. What happens at
@@ -556,6 +558,8 @@ impl State {
                 JobState::Panicked { message }
             }
         };
+        // A step back was noted by now, or it was not taken.
+        World::ALL.into_iter().for_each(|world| self.rooms.timeline.of_mut(world).stepped_back(id));
         self.jobs.ended(id, state, elapsed);
     }
 

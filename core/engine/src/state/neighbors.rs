@@ -16,6 +16,7 @@ use crate::command::{Command, JobCommand, NoticeCommand};
 use crate::commission::CommissionWorkflow;
 use crate::detect::{DetectAround, DetectWorkflow};
 use crate::drift::{BoardAt, DriftAround, DriftWorkflow};
+use crate::eyes::view::CaptureEnded;
 use crate::eyes::{EyesAround, EyesWorkflow};
 use crate::gap::{GapAround, GapWorkflow};
 use crate::grasp::{GraspAround, GraspWorkflow};
@@ -295,7 +296,10 @@ impl Neighbors<MountWorkflow> for State {
         }
     }
 
-    fn after(&mut self, _world: World) {
+    fn after(&mut self, world: World) {
+        if self.rooms.mount.of(world).wants_corners() {
+            self.rooms.eyes.of_mut(world).end_auto_capture(CaptureEnded::MountLooks);
+        }
         self.use_models();
     }
 }

@@ -5,20 +5,28 @@ use std::sync::Arc;
 
 use plumbline_correction::CorrectionModel;
 use plumbline_effects::RigModel;
-use plumbline_model::touch_plan::Purpose;
 use plumbline_model::touchscreen::ScreenPlacement;
 use plumbline_model::{StereoCalibration, counted};
 use plumbline_vision::mount::MountCalibration;
 
 use super::State;
+use super::actions::Action;
+use super::measured::MeasuredNow;
 use super::rooms::{Neighbors, Rooms};
+use crate::eyes::EyesWorkflow;
+use crate::eyes::command::EyesCommand;
 use crate::eyes::view::AcceptedCalibration;
 use crate::gap::view::FindingEntry;
-use crate::ground::World;
+use crate::ground::notice::NoticeLevel;
+use crate::ground::{Workflow as _, World};
+use crate::mount::MountWorkflow;
+use crate::mount::command::MountCommand;
 use crate::rig_models::made_at;
 use crate::timeline::view::{Figure, Subject};
-use crate::timeline::{Check, Finding, Standing, TimelineAround, TimelineWorkflow};
-use crate::touch::RunStanding;
+use crate::timeline::{Finding, Standing, StepBack, TimelineAround, TimelineWorkflow};
+use crate::touch::TouchWorkflow;
+use crate::touch::command::TouchCommand;
+use crate::work::Work;
 
 /// What is in use in a world, cheap to compare. Outside `None`: not read yet.
 #[derive(Clone, Debug, Default)]
@@ -29,7 +37,7 @@ pub(super) struct Results {
     correction: Option<Option<Arc<CorrectionModel>>>,
     effects: Option<Arc<RigModel>>,
     findings: Arc<[FindingEntry]>,
-    check: Option<RunStanding>,
+    measured: MeasuredNow,
 }
 
 impl Results {
@@ -48,7 +56,7 @@ impl Results {
             && same(&self.correction, &other.correction)
             && same(&effects(self), &effects(other))
             && Arc::ptr_eq(&self.findings, &other.findings)
-            && self.check == other.check
+            && self.measured.is(&other.measured)
     }
 }
 
@@ -64,6 +72,42 @@ impl State {
         self.with::<TimelineWorkflow>(world, |timeline, around, context| timeline.look(around, context));
     }
 
+    /// Has the workflow of a result put in use again what was before. What it refuses is no step.
+    fn step_back(&mut self, world: World, step: StepBack) {
+        let asked = self.actions.len();
+        match (step.subject, step.to.clone()) {
+            (Subject::Eyes, id) => {
+                let command = EyesCommand::UseEarlier { id };
+                self.with::<EyesWorkflow>(world, |room, around, context| {
+                    room.apply(command, around, context)
+                });
+            }
+            (Subject::Mount, id) => {
+                let command = id.map_or(MountCommand::UseNominal, |id| MountCommand::UseEarlier { id });
+                self.with::<MountWorkflow>(world, |room, around, context| {
+                    room.apply(command, around, context)
+                });
+            }
+            (Subject::Screen, id) => {
+                let command = id
+                    .map_or(TouchCommand::UseNominalPlacement, |id| TouchCommand::UseEarlierPlacement { id });
+                self.with::<TouchWorkflow>(world, |room, around, context| {
+                    room.apply(command, around, context)
+                });
+            }
+            // The workflows of these keep the order in which theirs were in use themselves; what was only measured
+            // changed nothing.
+            _ => return self.notify(NoticeLevel::Warning, "That cannot be taken back on the timeline."),
+        }
+        let work = self.actions[asked..].iter().find_map(|action| match action {
+            Action::Start(id, Work::Eyes(_) | Work::Mount(_) | Work::Touch(_)) => Some(*id),
+            _ => None,
+        });
+        if let Some(work) = work {
+            self.rooms.timeline.of_mut(world).stepping_back(step, work);
+        }
+    }
+
     fn results_of(&self, world: World) -> Results {
         let Rooms { eyes, mount, touch, models, gap, .. } = &self.rooms;
         let accepted = eyes.of(world).accepted();
@@ -74,13 +118,9 @@ impl State {
             correction: models.of(world).accepted().map(|(_, model)| model.cloned()),
             effects: gap.of(world).model().cloned(),
             findings: gap.of(world).entries(),
-            check: touch.of(world).run_standing().filter(is_finished_check),
+            measured: self.measured_of(world),
         }
     }
-}
-
-fn is_finished_check(run: &RunStanding) -> bool {
-    run.is_finished && run.purpose == Purpose::Check
 }
 
 impl Neighbors<TimelineWorkflow> for State {
@@ -96,19 +136,18 @@ impl Neighbors<TimelineWorkflow> for State {
             }),
             gap.of(world).model().map(|model| of_effects(model, gap.of(world).effects_in_use())),
         ];
-        let check = touch.run_standing().filter(is_finished_check).map(|run| {
-            let (with, described_m) = touch.run_corrected();
-            let id =
-                run.session.file_name().unwrap_or(run.session.as_os_str()).to_string_lossy().into_owned();
-            let with = with.map(|with| with.name().to_owned());
-            Check { id, touches: run.touched, with, described_m, mean_m: run.mean_m }
-        });
         TimelineAround {
             rig: self.rig.name.clone(),
             is_twin: world == World::Twin,
             in_use: in_use.into_iter().flatten().collect(),
             findings: gap.of(world).entries().iter().map(of_finding).collect(),
-            check,
+            measured: self.told_of(world),
+        }
+    }
+
+    fn after(&mut self, world: World) {
+        for step in self.rooms.timeline.of_mut(world).take_steps() {
+            self.step_back(world, step);
         }
     }
 }

@@ -15,8 +15,8 @@ pub struct TimelineAround {
     pub in_use: Vec<Standing>,
     /// Findings that were kept, in any order.
     pub findings: Vec<Finding>,
-    /// The finished run of touches that checks something and is shown.
-    pub check: Option<Check>,
+    /// What else was measured and is shown in its workflow, oldest first.
+    pub measured: Vec<Measured>,
 }
 
 /// What is in use of a kind.
@@ -53,17 +53,21 @@ pub struct Finding {
     pub after: Figure,
 }
 
-/// Touches at new targets that are finished.
+/// What was measured without anything being put in use.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Check {
-    /// Name of its session.
+pub struct Measured {
+    /// Of which kind.
+    pub subject: Subject,
+    /// Tells it from every other one of its kind: the name of its session.
     pub id: String,
-    /// How many touches count.
-    pub touches: usize,
-    /// What corrected the targets: "M3", "effects", or nothing.
-    pub with: Option<String>,
-    /// Mean error of those that were sent as the robot is described, m.
-    pub described_m: Option<f64>,
-    /// Mean error, m.
-    pub mean_m: Option<f64>,
+    /// When, where its workflow keeps that.
+    pub at: Option<Timestamp>,
+    /// What it is, for people.
+    pub title: String,
+    /// The error before, on the same data.
+    pub before: Option<Figure>,
+    /// The error.
+    pub after: Figure,
+    /// What these are errors of, and on what.
+    pub basis: String,
 }

@@ -17,9 +17,9 @@ pub enum TimelineCommand {
         /// As what.
         format: TimelineFormat,
     },
-    /// What is asked of the workflow of a kind next is Undo: a step back, and no step of its own, as it would be if
-    /// the same were used again on purpose.
-    TakesBack {
+    /// Undo: puts in use again what was before. A step back, and no step of its own, as it would be if the same were
+    /// used again on purpose; where the workflow of that kind refuses it, nothing is noted.
+    TakeBack {
         /// Of which kind.
         subject: Subject,
         /// What is in use again then: its id in its workflow; `None`: as it is described.

@@ -1,5 +1,5 @@
 //! Everything that was ever found out of a robot, on one line: each calibration, model and finding that
-//! was put in use or taken back, and each check, with its error before and after.
+//! was put in use or taken back, and everything that was measured, with its error before and after.
 //!
 //! No workflow writes here. The state looks after every change at what is in use in all of them, and
 //! hands that in; what differs from what was in use before becomes an entry. So nothing is put in use
@@ -15,6 +15,6 @@ pub mod view;
 pub mod work;
 mod workflow;
 
-pub use around::{Check, Finding, Standing, TimelineAround};
+pub use around::{Finding, Measured, Standing, TimelineAround};
 pub use plumbline_report::tile::{Picture as PagePicture, Tile as TilePage, tile_pdf};
-pub use workflow::TimelineWorkflow;
+pub use workflow::{StepBack, TimelineWorkflow};

@@ -40,6 +40,7 @@ pub fn csv(entries: &[TimelineEntry]) -> Result<Vec<u8>, TableError> {
         let unit = entry.after.or(entry.before).map_or("", |figure| match figure {
             Figure::Meters(_) => "m",
             Figure::Pixels(_) => "px",
+            Figure::Share(_) => "share",
         });
         table.write_record([
             entry.number.to_string(),
@@ -110,5 +111,6 @@ fn text(figure: Figure) -> String {
     match figure {
         Figure::Meters(length_m) => format!("{:.2} mm", length_m * 1e3),
         Figure::Pixels(px) => format!("{px:.3} px"),
+        Figure::Share(share) => format!("{:.0} %", 100.0 * share),
     }
 }

@@ -9,10 +9,10 @@ use super::command::{TimelineCommand, TimelineFormat};
 use super::kept::FILE;
 use super::view::{EntryKind, Figure, Subject, TimelineView};
 use super::work::Context;
-use super::{Check, Finding, Standing, TimelineAround, TimelineWorkflow};
+use super::{Finding, Measured, Standing, StepBack, TimelineAround, TimelineWorkflow};
 use crate::Skipped;
-use crate::ground::jobs::JobError;
 use crate::ground::jobs::list::JobList;
+use crate::ground::jobs::{JobError, JobId};
 use crate::ground::notice::Notices;
 use crate::ground::{Asked, LongWork as _, Moment, Time, Workflow as _};
 
@@ -118,9 +118,13 @@ fn each_change_is_an_entry_with_the_error_before_and_after() {
 fn a_step_back_by_undo_is_told_from_what_was_used_again_on_purpose() {
     let folder = folder();
     let mut lab = Lab::on(folder.path(), TimelineAround::default());
-    let back = |lab: &mut Lab, to: &str| {
-        let undo = TimelineCommand::TakesBack { subject: Subject::Eyes, to: Some(to.to_owned()) };
+    // As the state does: the step is handed to its workflow, whose work takes it.
+    let back = |lab: &mut Lab, to: &str, work: u64| {
+        let undo = TimelineCommand::TakeBack { subject: Subject::Eyes, to: Some(to.to_owned()) };
         lab.with(|room, around, context| room.apply(undo, around, context));
+        let steps = lab.room.take_steps();
+        assert_eq!(steps, [StepBack { subject: Subject::Eyes, to: Some(to.to_owned()) }]);
+        steps.into_iter().for_each(|step| lab.room.stepping_back(step, JobId(work)));
     };
     let is_undo = |lab: &mut Lab, id: &str| {
         lab.now(vec![eyes(Some(id), None)]).entries.last().expect("an entry").by_undo
@@ -128,12 +132,15 @@ fn a_step_back_by_undo_is_told_from_what_was_used_again_on_purpose() {
     assert!(!is_undo(&mut lab, "a") && !is_undo(&mut lab, "b"));
     assert!(!is_undo(&mut lab, "a"), "used again");
     assert!(!is_undo(&mut lab, "b"));
-    back(&mut lab, "a");
+    back(&mut lab, "a", 101);
     assert!(is_undo(&mut lab, "a"));
     assert!(!is_undo(&mut lab, "b"), "asked for once, it is once");
-    back(&mut lab, "a");
+    back(&mut lab, "a", 102);
     assert!(!is_undo(&mut lab, "c"), "something else came in between");
     assert!(!is_undo(&mut lab, "a"), "so that it is over");
+    back(&mut lab, "c", 103);
+    lab.room.stepped_back(JobId(103));
+    assert!(!is_undo(&mut lab, "c"), "its work came to nothing, and then it was used again");
     let kept = Lab::on(folder.path(), TimelineAround::default()).view();
     assert_eq!(kept.entries.iter().filter(|entry| entry.by_undo).count(), 1, "it is kept");
 }
@@ -175,26 +182,47 @@ fn findings_and_checks_stand_there_once() {
         before: Figure::Meters(6.7e-3),
         after: Figure::Meters(3.6e-3),
     };
-    let check = |mean_m: f64| Check {
-        id: "2026-09-14T12-00-00_check".to_owned(),
-        touches: 1,
-        with: Some("M3".to_owned()),
-        described_m: Some(5.88e-3),
-        mean_m: Some(mean_m),
+    let measured = |subject, title: &str, after_m: f64| Measured {
+        subject,
+        id: "2026-09-14T12-00-00_touches".to_owned(),
+        at: None,
+        title: title.to_owned(),
+        before: Some(Figure::Meters(5.88e-3)),
+        after: Figure::Meters(after_m),
+        basis: "mean distance from the target".to_owned(),
     };
+    let check = |after_m| measured(Subject::Check, "1 touch at new targets", after_m);
     let mut lab = Lab::on(folder.path(), TimelineAround::default());
     lab.around.findings =
         vec![finding("late", "2026-09-14T11:00:00Z"), finding("early", "2026-09-14T10:00:00Z")];
-    lab.around.check = Some(check(0.93e-3));
+    lab.around.measured = vec![check(0.93e-3)];
     lab.now(vec![]);
-    lab.around.check = Some(check(0.91e-3));
+    lab.around.measured = vec![check(0.91e-3)];
     let view = lab.now(vec![]);
     let ids: Vec<_> = view.entries.iter().filter_map(|entry| entry.id_after.as_deref()).collect();
-    assert_eq!(ids, ["early", "late", "2026-09-14T12-00-00_check"]);
+    assert_eq!(ids, ["early", "late", "2026-09-14T12-00-00_touches"]);
     let checked = &view.entries[2];
-    assert_eq!(checked.title, "1 touch at new targets, corrected with M3");
     let both = (checked.before, checked.after);
     assert_eq!(both, (Some(Figure::Meters(5.88e-3)), Some(Figure::Meters(0.91e-3))), "brought up to date");
+
+    // What a finding suggested stays that when the finding is shown no more.
+    lab.around.measured = vec![measured(Subject::Experiment, "suggested and made: a weight", 4.0e-3)];
+    lab.now(vec![]);
+    lab.around.measured = vec![measured(Subject::Touches, "12 touches to learn from", 4.1e-3)];
+    let view = lab.now(vec![]);
+    let suggested = view.entries.last().expect("an entry");
+    assert_eq!((view.entries.len(), suggested.subject), (4, Subject::Experiment));
+    assert_eq!(
+        (&*suggested.title, suggested.after),
+        ("suggested and made: a weight", Some(Figure::Meters(4.1e-3)))
+    );
+    // An evaluation is told as the model in use then had it.
+    for after_m in [2.0e-3, 3.0e-3] {
+        lab.around.measured = vec![measured(Subject::Places, "tomato at 36 of 36 places", after_m)];
+        lab.now(vec![]);
+    }
+    let view = lab.view();
+    assert_eq!((view.entries.len(), view.entries[4].after), (5, Some(Figure::Meters(2.0e-3))));
 }
 
 #[test]

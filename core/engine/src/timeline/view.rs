@@ -34,6 +34,18 @@ pub enum Subject {
     Finding,
     /// Touches at new targets.
     Check,
+    /// Touches to learn from.
+    Touches,
+    /// Touches that a finding suggested.
+    Experiment,
+    /// Whether the calibration of the eyes still holds.
+    Health,
+    /// A thing at known places of the table, as the eyes see it.
+    Places,
+    /// An experiment with grasps.
+    Grasps,
+    /// Detectors that were judged.
+    Detectors,
 }
 
 impl Subject {
@@ -50,6 +62,12 @@ impl Subject {
             Self::Effects => "Robot model",
             Self::Finding => "Finding",
             Self::Check => "Check",
+            Self::Touches => "Touches",
+            Self::Experiment => "Experiment",
+            Self::Health => "Health of the eyes",
+            Self::Places => "Places on the table",
+            Self::Grasps => "Grasps",
+            Self::Detectors => "Detectors",
         }
     }
 }
@@ -68,7 +86,7 @@ pub enum EntryKind {
     Measured,
 }
 
-/// An error with its unit.
+/// An error with its unit, or what came out well of all.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Figure {
@@ -76,19 +94,27 @@ pub enum Figure {
     Meters(f64),
     /// Pixels.
     Pixels(f64),
+    /// The share that came out well, 0 to 1: no error, more of it is better.
+    Share(f64),
 }
 
 impl Figure {
-    /// The number, m or px.
+    /// The number, m, px or a share of 1.
     pub fn value(self) -> f64 {
         match self {
-            Self::Meters(value) | Self::Pixels(value) => value,
+            Self::Meters(value) | Self::Pixels(value) | Self::Share(value) => value,
         }
     }
 
     /// Whether two can be compared.
     pub fn is_like(self, other: Self) -> bool {
-        matches!((self, other), (Self::Meters(_), Self::Meters(_)) | (Self::Pixels(_), Self::Pixels(_)))
+        std::mem::discriminant(&self) == std::mem::discriminant(&other)
+    }
+
+    /// Whether it is a smaller error, or a larger share, than one that it can be compared with.
+    pub fn is_better_than(self, other: Self) -> bool {
+        let (mine, others) = (self.value(), other.value());
+        self.is_like(other) && if matches!(self, Self::Share(_)) { mine > others } else { mine < others }
     }
 }
 

@@ -4,17 +4,25 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use jiff::Timestamp;
-use plumbline_model::counted;
 
-use super::around::{Check, Standing, TimelineAround};
+use super::around::{Measured, Standing, TimelineAround};
 use super::command::TimelineCommand;
 use super::kept::FILE;
 use super::page;
-use super::view::{EntryKind, Figure, InUseNow, Subject, TimelineEntry, TimelineView};
+use super::view::{EntryKind, InUseNow, Subject, TimelineEntry, TimelineView};
 use super::work::{Context, TimelineResult, TimelineWork};
 use crate::ground::jobs::JobId;
 use crate::ground::notice::NoticeLevel;
 use crate::ground::{Moment, Nothing, Workflow};
+
+/// A step back that Undo has asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StepBack {
+    /// Of which kind.
+    pub subject: Subject,
+    /// What is in use again then; `None`: as it is described.
+    pub to: Option<String>,
+}
 
 /// The whole workflow, of one world.
 #[derive(Clone, Debug)]
@@ -25,8 +33,10 @@ pub struct TimelineWorkflow {
     /// Whether the first look has been taken at a kind since the program began: what differs then was
     /// changed by another program.
     looked_at: Vec<Subject>,
-    /// Steps back that Undo has asked for, and what is in use again by them.
-    taking_back: Vec<(Subject, Option<String>)>,
+    /// Steps back that were asked for, to be handed to the workflows that take them.
+    asked: Vec<StepBack>,
+    /// Steps back that are being taken, and the work that takes them.
+    taking_back: Vec<(StepBack, JobId)>,
     writing: Option<JobId>,
     /// Whether something came since it was written last.
     is_behind: bool,
@@ -42,22 +52,38 @@ impl TimelineWorkflow {
             if is_first {
                 self.looked_at.push(standing.subject);
             }
-            let of_kind = |asked: &(Subject, Option<String>)| asked.0 == standing.subject;
-            let by_undo = self.taking_back.iter().find(|asked| of_kind(asked)).map(|(_, to)| to);
+            let of_kind = |step: &StepBack| step.subject == standing.subject;
+            let by_undo = self.taking_back.iter().find(|(step, _)| of_kind(step)).map(|(step, _)| &step.to);
             let by_undo = by_undo == Some(&standing.id);
             if take_standing(&mut entries, standing, is_first, by_undo, context.time.day) {
-                self.taking_back.retain(|asked| !of_kind(asked));
+                self.taking_back.retain(|(step, _)| !of_kind(step));
             }
         }
         take_findings(&mut entries, around);
-        if let Some(check) = &around.check {
-            take_check(&mut entries, check, context.time.day);
+        for measured in &around.measured {
+            take_measured(&mut entries, measured, context.time.day);
         }
         if entries[..] != known[..] {
             self.entries = Some(entries.into());
             self.is_behind = true;
         }
         self.keep(context);
+    }
+
+    /// Steps back for the workflows that take them.
+    pub fn take_steps(&mut self) -> Vec<StepBack> {
+        std::mem::take(&mut self.asked)
+    }
+
+    /// A step back is being taken: what comes into use by it is no step of its own.
+    pub fn stepping_back(&mut self, step: StepBack, work: JobId) {
+        self.taking_back.retain(|(other, _)| other.subject != step.subject);
+        self.taking_back.push((step, work));
+    }
+
+    /// Work has ended: a step that it took was noted by now, or it was not taken.
+    pub fn stepped_back(&mut self, work: JobId) {
+        self.taking_back.retain(|(_, taken_by)| *taken_by != work);
     }
 
     fn keep(&mut self, context: &mut Context<'_>) {
@@ -154,38 +180,42 @@ fn take_findings(entries: &mut Vec<TimelineEntry>, around: &TimelineAround) {
     }
 }
 
-/// A check that is there already is brought up to date: touches may be taken out of it later.
-fn take_check(entries: &mut Vec<TimelineEntry>, check: &Check, now: Timestamp) {
-    let Some(mean_m) = check.mean_m else { return };
-    let what = match &check.with {
-        Some(with) => format!("{} at new targets, corrected with {with}", counted(check.touches, "touch")),
-        None => format!("{} at new targets, without a correction", counted(check.touches, "touch")),
-    };
-    let (before, basis) = match check.described_m {
-        Some(described_m) => (
-            Some(Figure::Meters(described_m)),
-            "mean distance from the target; before: touches of the same run as the robot is described",
-        ),
-        None => (None, "mean distance from the target"),
-    };
+/// What is there already is brought up to date: touches may be taken out of it later. What it was called when it was
+/// measured it is called still.
+fn take_measured(entries: &mut Vec<TimelineEntry>, measured: &Measured, now: Timestamp) {
+    let is_run = |subject| matches!(subject, Subject::Touches | Subject::Experiment);
     let is_same = |entry: &&mut TimelineEntry| {
-        entry.subject == Subject::Check && entry.id_after.as_deref() == Some(&check.id)
+        let of_kind = entry.subject == measured.subject || is_run(entry.subject) && is_run(measured.subject);
+        of_kind && entry.id_after.as_deref() == Some(&measured.id)
     };
     if let Some(known) = entries.iter_mut().find(is_same) {
-        (known.title, known.before, known.after) = (what, before, Some(Figure::Meters(mean_m)));
+        // An evaluation stands as the model in use then had it, whatever it is shown with later.
+        if known.subject == Subject::Places {
+            return;
+        }
+        // Touches that a finding suggested are that still when another one is shown.
+        if known.subject == measured.subject {
+            known.title.clone_from(&measured.title);
+        }
+        known.after = Some(measured.after);
+        // What it was compared with may be in use no more.
+        if measured.before.is_some() || known.before.is_none() {
+            known.before = measured.before;
+            known.basis.clone_from(&measured.basis);
+        }
         return;
     }
     entries.push(TimelineEntry {
         number: next_number(entries),
-        at: now,
-        subject: Subject::Check,
+        at: measured.at.unwrap_or(now),
+        subject: measured.subject,
         kind: EntryKind::Measured,
-        title: what,
-        before,
-        after: Some(Figure::Meters(mean_m)),
-        basis: basis.to_owned(),
+        title: measured.title.clone(),
+        before: measured.before,
+        after: Some(measured.after),
+        basis: measured.basis.clone(),
         id_before: None,
-        id_after: Some(check.id.clone()),
+        id_after: Some(measured.id.clone()),
         outside: false,
         by_undo: false,
     });
@@ -218,6 +248,7 @@ impl Workflow for TimelineWorkflow {
             file: folder.join(FILE),
             entries: None,
             looked_at: Vec::new(),
+            asked: Vec::new(),
             taking_back: Vec::new(),
             writing: None,
             is_behind: false,
@@ -237,10 +268,7 @@ impl Workflow for TimelineWorkflow {
     fn apply(&mut self, command: TimelineCommand, around: &TimelineAround, context: &mut Context<'_>) {
         let (file, format) = match command {
             TimelineCommand::Report { file, format } => (file, format),
-            TimelineCommand::TakesBack { subject, to } => {
-                self.taking_back.retain(|(asked, _)| *asked != subject);
-                return self.taking_back.push((subject, to));
-            }
+            TimelineCommand::TakeBack { subject, to } => return self.asked.push(StepBack { subject, to }),
         };
         let Some(entries) = self.entries.clone() else {
             return context.refuse("The timeline was not read yet, or cannot be: the messages say why.");

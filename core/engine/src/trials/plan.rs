@@ -75,6 +75,19 @@ impl Experiment {
         far.map(|[x_m, y_m]| format!("a position at {x_m}, {y_m} m"))
     }
 
+    /// Whether it was made on a twin.
+    pub fn is_of_twin(&self) -> bool {
+        !self.twin.starts_with(ROBOT)
+    }
+
+    /// Who made it: "the twin lab", "the robot nico".
+    pub fn who(&self) -> String {
+        match self.twin.strip_prefix(ROBOT) {
+            Some(name) => format!("the robot {name}"),
+            None => format!("the twin {}", self.twin),
+        }
+    }
+
     /// Whether attempts of both can be put together; what does not tell its lab is taken for one of the same.
     pub fn is_same(&self, other: &Self) -> bool {
         let told = |lab: &Option<String>, or: &Option<String>| lab.clone().or_else(|| or.clone());

@@ -3,7 +3,7 @@
 use crate::common::{Desk, WALL_M, board, board_pairs, eyes, resized, swapped, wall_pair};
 use plumbline_engine::ground::stage::Stage;
 use plumbline_engine::jobs::Outcome;
-use plumbline_engine::view::{CaptureHint, JobState, Origin, StepState};
+use plumbline_engine::view::{CaptureEnded, CaptureHint, JobState, Origin, StepState};
 use plumbline_engine::{
     Action, ExportFormat, Exported, EyesCommand, FileLength, LiveCommand, NoticeLevel, ProbePoint, Products,
 };
@@ -104,7 +104,8 @@ fn accepting_a_calibration_ends_capturing_by_itself_until_it_is_switched_on_agai
     assert!(desk.view().eyes.auto_capture, "what is solved may be collected on");
     desk.apply(EyesCommand::Accept);
     let eyes = desk.view().eyes;
-    assert!(eyes.in_use.is_some() && !eyes.auto_capture && eyes.accepting_ended_capture);
+    assert!(eyes.in_use.is_some() && !eyes.auto_capture);
+    assert_eq!(eyes.capture_ended, Some(CaptureEnded::Accepted));
 
     // The head turns for the mount: the eyes see the board where it never was, and collect nothing.
     desk.apply(EyesCommand::DeleteAll);
@@ -115,14 +116,14 @@ fn accepting_a_calibration_ends_capturing_by_itself_until_it_is_switched_on_agai
     assert!(desk.view().eyes.collected.is_empty());
     desk.apply(EyesCommand::AutoCapture(true));
     let eyes = desk.view().eyes;
-    assert!(eyes.auto_capture && !eyes.accepting_ended_capture);
+    assert!(eyes.auto_capture && eyes.capture_ended.is_none());
     assert_eq!(eyes.collected.len(), 1, "what stands there");
 
     // Nothing is said where nothing was switched off.
     desk.apply(EyesCommand::AutoCapture(false));
     desk.apply(EyesCommand::ProposeEarlier { id: eyes.earlier[0].id.clone() });
     desk.apply(EyesCommand::Accept);
-    assert!(!desk.view().eyes.accepting_ended_capture);
+    assert!(desk.view().eyes.capture_ended.is_none());
 }
 
 #[test]

@@ -8,7 +8,7 @@ use plumbline_effects::RigModel;
 use plumbline_effects::rig_model::{Addition, ModelEffect};
 use plumbline_engine::timeline::view::{EntryKind, Subject};
 use plumbline_engine::view::TimelineEntry;
-use plumbline_engine::{EyesCommand, FileLength, GapCommand, TouchCommand, rig_models};
+use plumbline_engine::{EyesCommand, FileLength, GapCommand, TimelineCommand, TouchCommand, rig_models};
 use plumbline_model::formats::native;
 use plumbline_model::robot::{Rig, default_rig};
 use plumbline_model::touchscreen::place_screen;
@@ -60,6 +60,41 @@ fn a_calibration_is_taken_back_to_the_one_before_and_to_none() {
     assert_eq!(entries(&mut again), entries(&mut desk));
     again.apply(EyesCommand::UseEarlier { id: Some(second.clone()) });
     assert_eq!(newest(&mut again).id_after, Some(second));
+}
+
+/// Its file on the shelf, which goes away while this acts.
+fn without_file(folder: &Path, id: &str, act: impl FnOnce()) {
+    let shelf = folder.join("calibrations");
+    let files = std::fs::read_dir(shelf).expect("there").flatten().map(|entry| entry.path());
+    let mine =
+        files.filter(|file| file.file_name().is_some_and(|name| name.to_string_lossy().starts_with(id)));
+    let mine: Vec<_> =
+        mine.map(|file| (file.clone(), folder.join(file.file_name().expect("it has a name")))).collect();
+    assert!(!mine.is_empty(), "{id} is kept");
+    mine.iter().for_each(|(file, away)| std::fs::rename(file, away).expect("moved away"));
+    act();
+    mine.iter().for_each(|(file, away)| std::fs::rename(away, file).expect("moved back"));
+}
+
+#[test]
+fn undo_is_one_command_and_what_was_refused_is_no_step_back() {
+    let folder = tempfile::tempdir().expect("temporary folder");
+    let mut desk = Desk::new(folder.path());
+    let first = accept(&mut desk, folder.path(), 1.0);
+    let second = accept(&mut desk, folder.path(), 1.01);
+    let back = |id: &str| TimelineCommand::TakeBack { subject: Subject::Eyes, to: Some(id.to_owned()) };
+    without_file(folder.path(), &first, || desk.apply(back(&first)));
+    assert_eq!(desk.view().eyes.in_use.as_ref().map(|in_use| &in_use.id), Some(&second), "it is not there");
+    assert_eq!(entries(&mut desk).len(), 2);
+    // Used again on purpose later, it is no step back.
+    desk.apply(EyesCommand::UseEarlier { id: Some(first.clone()) });
+    assert!(!newest(&mut desk).by_undo, "{:?}", newest(&mut desk));
+    desk.apply(back(&second));
+    let entry = newest(&mut desk);
+    assert!(entry.by_undo && entry.id_after.as_ref() == Some(&second), "{entry:?}");
+    // What is only measured cannot be taken back, and it is said.
+    desk.apply(TimelineCommand::TakeBack { subject: Subject::Check, to: None });
+    assert!(desk.last_notice().contains("cannot be taken back"), "{}", desk.last_notice());
 }
 
 /// A place of the screen, moved by this.

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use plumbline_effects::rig_model::ModelEffect;
+use plumbline_effects::robot_model::Unmeasured;
 use plumbline_effects::{PlaceInRobot, RobotModel, SeenUnder};
 use plumbline_engine::eyes::store::Store as EyesStore;
 use plumbline_engine::ground::World;
@@ -25,9 +26,18 @@ const BEYOND_LIMITS_RAD: f64 = 0.1;
 const NO_MOUNT: &str = "The ± of places in the robot's frame is wide because no calibrated mount of the eyes was given: \
      it holds how far mounts usually are off. Calibrate the mount, and name its file with --mount.";
 
+const MOUNT_OF_FILE: &str = "The ± of places in the robot's frame leaves out how well the mount of the eyes is known: the \
+     rig file has a mount of its own and does not say it. Name the file of the calibrated mount with --mount.";
+
+/// What the ± leaves out where a calibration of the eyes does not say how well it is known.
+pub(super) const EYES_UNTOLD: &str = "The ± leaves out how well the eyes are calibrated: the calibration file does not say \
+     it. A calibration made here does.";
+
 /// The robot as it is known, and how it stood.
 pub(super) struct Known {
     model: RobotModel,
+    /// Whether the mount is one that the rig file brought along.
+    mount_of_file: bool,
     posture: Posture,
     seen: SeenUnder,
 }
@@ -57,7 +67,13 @@ impl Known {
             screen: None,
             effects: effects.as_ref(),
         };
-        Self::new(accepted.robot_model(&rig)?, &files.stood)
+        let mut model = accepted.robot_model(&rig)?;
+        let mount_of_file = mount.is_none() && has_own_mount(&rig);
+        if mount_of_file {
+            let others = model.not_calibrated();
+            model = model.with_not_calibrated(Unmeasured { mount: false, ..others });
+        }
+        Ok(Self { mount_of_file, ..Self::new(model, &files.stood)? })
     }
 
     /// All that was accepted in a lab, as its window would use it; and its calibrated eyes.
@@ -90,7 +106,7 @@ impl Known {
             posture[joint] = angle_rad;
         }
         let seen = SeenUnder { t_secs: stood.eyes_on_s, ..SeenUnder::default() };
-        Ok(Self { model, posture, seen })
+        Ok(Self { model, mount_of_file: false, posture, seen })
     }
 
     /// What it is called for people.
@@ -109,13 +125,40 @@ impl Known {
         [eyes.pan, eyes.tilt].map(|joint| self.posture[joint])
     }
 
-    /// Why places are stated with a wide uncertainty, and what to do: a sentence or two.
+    /// Why places are stated with a wide uncertainty, or what it leaves out, and what to do: a sentence or two.
     pub fn wide_because(&self) -> Option<&'static str> {
-        self.model.unmeasured().mount.then_some(NO_MOUNT)
+        match self.mount_of_file {
+            true => Some(MOUNT_OF_FILE),
+            false => self.model.unmeasured().mount.then_some(NO_MOUNT),
+        }
     }
 
     /// Where something is; `None`: with the effects of the model there is no such place.
     pub fn place(&self, found: &Located) -> Option<PlaceInRobot> {
         self.model.place(&found.point, &found.covariance_m2, &self.posture, &self.seen)
+    }
+}
+
+/// Whether a rig file of a robot that comes with the program has another mount of the eyes than that robot is described
+/// with: then somebody measured it. Of other robots nobody here knows the description.
+fn has_own_mount(rig: &Rig) -> bool {
+    let described = Rig::built_in(&rig.name);
+    described.is_ok_and(|described| described.eyes.head_from_left != rig.eyes.head_from_left)
+}
+
+#[cfg(test)]
+mod tests {
+    use plumbline_model::robot::default_rig;
+
+    use super::*;
+
+    #[test]
+    fn a_mount_in_a_rig_file_is_told_from_the_described_one() {
+        let mut rig = (*default_rig()).clone();
+        assert!(!has_own_mount(&rig), "as it is described");
+        rig.eyes.head_from_left.isometry.translation.vector.x += 0.004;
+        assert!(has_own_mount(&rig));
+        rig.name = "another".to_owned();
+        assert!(!has_own_mount(&rig), "nobody knows how it is described");
     }
 }

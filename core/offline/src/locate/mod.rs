@@ -12,7 +12,7 @@ use plumbline_vision::calibration_file;
 use plumbline_vision::locate::{Located, Locator};
 use serde::Serialize;
 
-use self::known::Known;
+use self::known::{EYES_UNTOLD, Known};
 use super::OfflineError;
 use super::pairs::check_sizes;
 use super::table::Table;
@@ -81,7 +81,8 @@ pub struct Stood {
 pub struct LocateReport {
     /// In the order of the table.
     pub points: Vec<LocatedPoint>,
-    /// What was noticed about the images, and why places in the robot's frame are stated with a wide uncertainty.
+    /// What was noticed about the images, and why places are stated with a wide uncertainty, or what
+    /// it leaves out.
     pub notes: Vec<String>,
     /// The model of the robot that places in its frame rest on: "as described", "with 2 effects".
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -173,6 +174,9 @@ pub fn locate(args: &LocateArgs, context: &dyn JobContext) -> Result<LocateRepor
     });
     let points = points.collect();
     notes.extend(robot.as_ref().and_then(Known::wide_because).map(str::to_owned));
+    if calibration.covariance.is_none() {
+        notes.push(EYES_UNTOLD.to_owned());
+    }
     let head_rad = robot.as_ref().map(Known::head_rad);
     Ok(LocateReport {
         points,

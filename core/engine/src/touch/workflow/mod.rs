@@ -94,6 +94,11 @@ impl TouchWorkflow {
         self.run.as_ref().map(|run| run.plan.options.finger)
     }
 
+    /// What the run that is under way or shown was planned from.
+    pub fn run_options(&self) -> Option<&PlanOptions> {
+        self.run.as_ref().map(|run| &run.plan.options)
+    }
+
     /// The screen where it was measured to lie, on its block while a run has put it on one; `None`:
     /// nominal.
     pub fn screen(&self) -> Option<&Touchscreen> {

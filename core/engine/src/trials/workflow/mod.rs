@@ -54,6 +54,11 @@ impl TrialsWorkflow {
         std::mem::take(&mut self.wishes)
     }
 
+    /// The experiment that is shown, where attempts of it were made and none is under way.
+    pub fn resting(&self) -> Option<Arc<ShownTrials>> {
+        self.shown.clone().filter(|shown| shown.made > 0 && self.under_way.is_none())
+    }
+
     /// Whether it makes its attempts: one is under way, or prepared.
     pub fn is_under_way(&self) -> bool {
         self.under_way.is_some()

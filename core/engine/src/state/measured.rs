@@ -1,0 +1,338 @@
+//! What was measured in a world without anything being put in use by it, as the timeline sees it.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use jiff::Timestamp;
+use plumbline_gap::plan_for;
+use plumbline_model::counted;
+use plumbline_model::touch_plan::Purpose;
+
+use super::State;
+use crate::drift::PlacesResult;
+use crate::eyes::view::EyesHealth;
+use crate::ground::World;
+use crate::scores::Evaluation;
+use crate::timeline::Measured;
+use crate::timeline::view::{Figure, Subject};
+use crate::touch::RunStanding;
+use crate::touch::command::Correction;
+use crate::trials::view::ShownTrials;
+
+/// All of it, cheap to compare.
+#[derive(Clone, Debug, Default)]
+pub(super) struct MeasuredNow {
+    health: Option<(Timestamp, Arc<EyesHealth>)>,
+    run: Option<RunStanding>,
+    places: Option<PlacesResult>,
+    trials: Option<Arc<ShownTrials>>,
+    judged: Option<(Timestamp, Arc<Evaluation>)>,
+}
+
+impl MeasuredNow {
+    pub fn is(&self, other: &Self) -> bool {
+        fn same<T>(a: Option<&Arc<T>>, b: Option<&Arc<T>>) -> bool {
+            a.map(Arc::as_ptr) == b.map(Arc::as_ptr)
+        }
+        let of =
+            |now: &Self| (now.health.as_ref().map(|(at, _)| *at), now.judged.as_ref().map(|(at, _)| *at));
+        of(self) == of(other)
+            && self.run == other.run
+            && self.places == other.places
+            && same(self.trials.as_ref(), other.trials.as_ref())
+    }
+}
+
+impl State {
+    pub(super) fn measured_of(&self, world: World) -> MeasuredNow {
+        let rooms = &self.rooms;
+        let is_told = |run: &RunStanding| {
+            run.is_finished && run.purpose != Purpose::PlaceScreen && run.mean_m.is_some()
+        };
+        MeasuredNow {
+            health: rooms.eyes.of(world).told_health(),
+            run: rooms.touch.of(world).run_standing().filter(is_told),
+            places: rooms.drift.places_result(world),
+            trials: rooms
+                .trials
+                .of(world)
+                .resting()
+                .filter(|shown| shown.experiment.is_of_twin() == (world == World::Twin)),
+            // Detectors are of no world: whoever looks at one finds them there.
+            judged: rooms.scores.judged(),
+        }
+    }
+
+    /// The same for the timeline, oldest first as far as that is known.
+    pub(super) fn told_of(&self, world: World) -> Vec<Measured> {
+        let now = self.measured_of(world);
+        let mut all = vec![];
+        all.extend(now.health.as_ref().map(|(at, health)| of_health(*at, health)));
+        all.extend(now.run.as_ref().and_then(|run| self.of_run(world, run)));
+        all.extend(now.places.as_ref().map(of_places));
+        all.extend(now.trials.as_deref().and_then(of_trials));
+        all.extend(now.judged.as_ref().and_then(|(at, judged)| of_detectors(*at, judged)));
+        all
+    }
+
+    fn of_run(&self, world: World, run: &RunStanding) -> Option<Measured> {
+        let (with, described_m) = self.rooms.touch.of(world).run_corrected();
+        let touches = counted(run.touched, "touch");
+        let (subject, title) = match (run.purpose, with) {
+            (Purpose::Check, Some(with)) => {
+                (Subject::Check, format!("{touches} at new targets, corrected with {}", with.name()))
+            }
+            (Purpose::Check, None) => {
+                (Subject::Check, format!("{touches} at new targets, without a correction"))
+            }
+            (Purpose::Train | Purpose::PlaceScreen, _) => match self.suggested(world) {
+                Some(what) => (Subject::Experiment, format!("suggested and made: {what}")),
+                None => (Subject::Touches, format!("{touches} to learn from")),
+            },
+        };
+        // Where none of them was sent as the robot is described, what the model was learned from tells how it was.
+        let learned_m = with.filter(|_| subject == Subject::Check && described_m.is_none());
+        let learned_m = learned_m.and_then(|with| self.without_m(world, with));
+        let of_target = match subject {
+            Subject::Check => "mean distance from the target".to_owned(),
+            _ => format!("mean distance from the target, {touches}"),
+        };
+        let basis = match (described_m, learned_m) {
+            (Some(_), _) => format!("{of_target}; before: touches of the same run as the robot is described"),
+            (None, Some(_)) => {
+                format!("{of_target}; before: without a model, at the touches that it was judged on")
+            }
+            (None, None) => of_target,
+        };
+        Some(Measured {
+            subject,
+            id: name_of(&run.session),
+            at: None,
+            title,
+            before: described_m.or(learned_m).map(Figure::Meters),
+            after: Figure::Meters(run.mean_m?),
+            basis,
+        })
+    }
+
+    /// How far touches missed without the correction model in use, mean, m; `None`: that is not what corrected.
+    fn without_m(&self, world: World, with: Correction) -> Option<f64> {
+        let models = self.rooms.models.of(world);
+        let in_use = models.accepted()?.1?.method();
+        (with == Correction::Model(in_use)).then(|| models.mean_before_m())?
+    }
+
+    /// What the shown finding suggested to be measured, where that is what the run of touches did.
+    fn suggested(&self, world: World) -> Option<String> {
+        let next = self.rooms.gap.of(world).suggested()?;
+        let made = self.rooms.touch.of(world).run_options()?;
+        let planned = plan_for(next, made.finger, made.area)?;
+        (planned == *made).then(|| next.what.clone())
+    }
+}
+
+fn name_of(folder: &Path) -> String {
+    folder.file_name().unwrap_or(folder.as_os_str()).to_string_lossy().into_owned()
+}
+
+fn worst(off_m: [f64; 3]) -> f64 {
+    off_m.into_iter().fold(0.0, f64::max)
+}
+
+fn of_health(at: Timestamp, health: &EyesHealth) -> Measured {
+    let [near, middle, far] = health.in_use.off_m.map(|off_m| format!("{:.1} cm", 100.0 * off_m));
+    let holds = if health.in_use.is_good { "still good" } else { "not good any more" };
+    let in_use =
+        format!("calibration in use {holds}: places off by {near} near, {middle} in the middle, {far} far");
+    let from = format!(
+        "how far off places come out where that is most, by {} in {}",
+        counted(health.places, "place"),
+        counted(health.pairs, "pair")
+    );
+    let in_use_m = Figure::Meters(worst(health.in_use.off_m));
+    let (before, after, basis) = match &health.proposed {
+        Some((proposed, _)) => {
+            let after = Figure::Meters(worst(proposed.off_m));
+            (Some(in_use_m), after, format!("{from}; before: the one in use, after: the one proposed"))
+        }
+        None => (None, in_use_m, from),
+    };
+    let title = if health.proposed.is_some() { format!("{in_use}; one proposed beside it") } else { in_use };
+    Measured { subject: Subject::Health, id: at.to_string(), at: Some(at), title, before, after, basis }
+}
+
+fn of_places(result: &PlacesResult) -> Measured {
+    let PlacesResult { session, object, measured, of, described_m, model_m } = result;
+    Measured {
+        subject: Subject::Places,
+        id: name_of(session),
+        at: None,
+        title: format!("{} at {measured} of {of} places", object.to_lowercase()),
+        before: Some(Figure::Meters(*described_m)),
+        after: Figure::Meters(*model_m),
+        basis: "mean error on the table, the same looks; before: as the robot is described, after: by the model then in \
+                use"
+            .to_owned(),
+    }
+}
+
+fn of_trials(shown: &ShownTrials) -> Option<Measured> {
+    let lifted = |method: &plumbline_report::experiment::Method| {
+        let sum = |of: fn(&plumbline_report::experiment::Position) -> usize| {
+            method.positions.iter().map(of).sum::<usize>()
+        };
+        let (lifted, attempts) = (sum(|at| at.successes), sum(|at| at.attempts));
+        (attempts > 0).then(|| (method.name.clone(), lifted as f64 / attempts as f64))
+    };
+    let methods: Vec<(String, f64)> = shown.page.methods.iter().filter_map(lifted).collect();
+    let (last, share) = methods.last()?;
+    let words: Vec<String> =
+        methods.iter().map(|(name, share)| format!("{name} {:.0} %", 100.0 * share)).collect();
+    let object = shown.experiment.object.to_lowercase();
+    let of = format!("share lifted, {} by {}", counted(shown.made, "attempt"), shown.experiment.who());
+    let (before, basis) = match methods.split_last() {
+        Some((_, [(first, share), ..])) => {
+            (Some(Figure::Share(*share)), format!("{of}; before: by {first}, after: by {last}"))
+        }
+        _ => (None, of),
+    };
+    Some(Measured {
+        subject: Subject::Grasps,
+        id: name_of(&shown.folder),
+        at: None,
+        title: format!("{object} lifted: {}", words.join(", ")),
+        before,
+        after: Figure::Share(*share),
+        basis,
+    })
+}
+
+fn of_detectors(at: Timestamp, judged: &Evaluation) -> Option<Measured> {
+    let table = &judged.table;
+    let scored =
+        table.rows.iter().filter_map(|row| Some((&row.model, row.scores.as_ref().ok()?.all.map50_95)));
+    let scored: Vec<(&String, f64)> = scored.filter(|(_, score)| (0.0..=1.0).contains(score)).collect();
+    let best = scored.iter().map(|(_, score)| *score).fold(f64::NAN, f64::max);
+    let words: Vec<String> =
+        scored.iter().map(|(model, score)| format!("{model} {:.1} %", 100.0 * score)).collect();
+    (!words.is_empty()).then(|| Measured {
+        subject: Subject::Detectors,
+        id: at.to_string(),
+        at: Some(at),
+        title: words.join(", "),
+        before: None,
+        after: Figure::Share(best),
+        basis: format!(
+            "mAP50–95{} on {} of {}",
+            if scored.len() > 1 { " of the best" } else { "" },
+            counted(table.images, "image"),
+            name_of(&table.set)
+        ),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::eyes::view::{HealthFigures, ProposalHealth};
+
+    fn figures(far_m: f64) -> HealthFigures {
+        HealthFigures {
+            is_good: far_m < 0.01,
+            off_m: [0.002, 0.004, far_m],
+            sigma_m: [0.0005; 3],
+            turn_rad: 0.001,
+            epipolar_px: 0.3,
+        }
+    }
+
+    #[test]
+    fn health_is_told_by_where_places_are_off_most_and_a_proposal_stands_beside_what_is_in_use() {
+        let mut health = EyesHealth { in_use: figures(0.021), proposed: None, pairs: 4, places: 120 };
+        let alone = of_health(Timestamp::UNIX_EPOCH, &health);
+        assert_eq!((alone.before, alone.after), (None, Figure::Meters(0.021)));
+        assert!(
+            alone.title.contains("not good any more") && alone.title.contains("2.1 cm far"),
+            "{}",
+            alone.title
+        );
+        health.proposed = Some((figures(0.006), ProposalHealth::Better));
+        let both = of_health(Timestamp::UNIX_EPOCH, &health);
+        assert_eq!((both.before, both.after), (Some(Figure::Meters(0.021)), Figure::Meters(0.006)));
+        assert!(both.basis.contains("120 places in 4 pairs") && both.basis.contains("the one proposed"));
+    }
+
+    #[test]
+    fn an_evaluation_says_by_how_many_places_and_what_the_model_is_worth() {
+        let result = PlacesResult {
+            session: "sessions/2026-09-14T12-00-00_grid".into(),
+            object: "Tomato",
+            measured: 35,
+            of: 36,
+            described_m: 0.0368,
+            model_m: 0.0061,
+        };
+        let told = of_places(&result);
+        assert_eq!((&*told.title, &*told.id), ("tomato at 35 of 36 places", "2026-09-14T12-00-00_grid"));
+        assert_eq!((told.before, told.after), (Some(Figure::Meters(0.0368)), Figure::Meters(0.0061)));
+    }
+
+    /// An experiment of these methods, each with so many lifted of ten.
+    fn trials(methods: &[(plumbline_grasp::Method, usize)]) -> ShownTrials {
+        use plumbline_report::experiment as page;
+        let experiment = crate::trials::Experiment {
+            format: crate::trials::FORMAT,
+            twin: "lab".to_owned(),
+            methods: methods.iter().map(|(method, _)| *method).collect(),
+            attempts: 10,
+            positions_m: vec![[0.3, -0.1]],
+            hand: plumbline_grasp::HandChoice::Auto,
+            object: "Tomato".to_owned(),
+            seed: 1,
+            lab: None,
+        };
+        let methods = methods
+            .iter()
+            .map(|(method, lifted)| page::Method {
+                name: method.name().to_uppercase(),
+                cells: vec![],
+                positions: vec![page::Position {
+                    at_m: [0.3, -0.1],
+                    successes: *lifted,
+                    attempts: if *lifted > 10 { 0 } else { 10 },
+                    published: None,
+                    hand_found: None,
+                }],
+            })
+            .collect::<Vec<_>>();
+        let made = 10 * methods.len();
+        let page = page::Experiment {
+            title: String::new(),
+            sentences: vec![],
+            screen_m: [[0.0; 2]; 4],
+            area_m: [[0.0; 2]; 2],
+            beyond_m: vec![],
+            methods,
+            version: String::new(),
+        };
+        ShownTrials { folder: "experiments/tomato".into(), experiment, made, all: made, page }
+    }
+
+    #[test]
+    fn grasps_are_told_by_the_share_that_was_lifted_and_more_is_better() {
+        use plumbline_grasp::Method::{M1, M5};
+        let both = of_trials(&trials(&[(M1, 3), (M5, 9)])).expect("attempts");
+        assert_eq!(both.title, "tomato lifted: M1 30 %, M5 90 %");
+        let (before, after) = (both.before.expect("two methods"), both.after);
+        assert_eq!((before, after), (Figure::Share(0.3), Figure::Share(0.9)));
+        assert!(after.is_better_than(before) && !before.is_better_than(after));
+        assert!(
+            both.basis.contains("20 attempts by the twin lab; before: by M1, after: by M5"),
+            "{}",
+            both.basis
+        );
+        let one = of_trials(&trials(&[(M5, 9)])).expect("attempts");
+        assert_eq!((one.before, one.after), (None, Figure::Share(0.9)));
+        assert!(of_trials(&trials(&[(M5, 11)])).is_none(), "nothing was attempted");
+    }
+}
