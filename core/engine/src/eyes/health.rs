@@ -8,6 +8,7 @@ use plumbline_model::{StereoCalibration, StereoFrame};
 
 use super::health_by_itself::ByItself;
 use super::view::{EyesHealth, HealthState, HealthView, ProposalHealth};
+use super::warming::Warmth;
 use super::work::{Context, EyesWork, Health, HealthEnded, Pictures};
 use super::workflow::{EyesAround, EyesWorkflow};
 use crate::ground::jobs::JobId;
@@ -272,7 +273,7 @@ impl EyesWorkflow {
     }
 
     /// What the window shows of it: of the calibration in use and of the proposal as they are now, and of nothing else.
-    pub(super) fn shown_health(&self) -> HealthView {
+    pub(super) fn shown_health(&self, instant: Instant) -> HealthView {
         let now = self.to_be_judged();
         let is_of_now = |of: &Of| now.as_ref().is_some_and(|now| of.is(now));
         // Looking again by itself leaves what stands there.
@@ -288,12 +289,24 @@ impl EyesWorkflow {
             (None, Some(_)) => HealthState::Judging,
             (None, None) => ended.map_or(HealthState::NotAsked, |(_, state)| state.clone()),
         };
-        HealthView { state, judged: judged.map(|(_, health)| health.clone()) }
+        let colder_wait_min = self.to_be_warm_min(instant);
+        HealthView { state, judged: judged.map(|(_, health)| health.clone()), colder_wait_min }
+    }
+
+    /// In how many minutes the eyes are as warm as when the calibration in use was made; `None`: they are, or nobody knows.
+    pub(super) fn to_be_warm_min(&self, now: Instant) -> Option<f64> {
+        let calibrated_min = self.in_use()?.evidence.as_ref()?.minutes_since_on?;
+        match Warmth::of(self.clock.shown_min(now)?, calibrated_min) {
+            Warmth::Colder { wait_min } => Some(wait_min),
+            Warmth::Alike | Warmth::Warmer => None,
+        }
     }
 
     /// Why the proposal is not offered; `None`: it is, or nobody has judged it.
     pub(super) fn not_offered(&self) -> Option<&'static str> {
-        match self.shown_health().judged?.proposed?.1 {
+        let of = self.to_be_judged()?;
+        let (_, judged) = self.health.judged.as_ref().filter(|(judged, _)| judged.is(&of))?;
+        match judged.proposed?.1 {
             ProposalHealth::Better | ProposalHealth::Untold | ProposalHealth::KnowsWhen => None,
             ProposalHealth::Worse => Some(
                 "The proposed calibration fits what the eyes see worse than the one in use: it is not put in use. \

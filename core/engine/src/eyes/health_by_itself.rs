@@ -73,7 +73,9 @@ impl EyesWorkflow {
         let is_proposed = self.has_unseen_proposal();
         // Watching drift says itself when the eyes turn, with the same share; and what a law of time takes off, the
         // calibration alone does not know.
-        let is_needed = is_proposed || !(around.is_watched || around.is_corrected);
+        // Cold eyes do not see as they did when they were calibrated warm, and will again.
+        let is_cold = self.to_be_warm_min(now).is_some();
+        let is_needed = is_proposed || !(around.is_watched || around.is_corrected || is_cold);
         if !sees_now || around.arm_moves || !is_needed {
             return self.put_off(now);
         }
@@ -121,6 +123,7 @@ impl EyesWorkflow {
         ask: Ask,
         context: &mut Context<'_>,
     ) {
+        let is_cold = self.to_be_warm_min(context.time.instant).is_some();
         let by_itself = &mut self.health.by_itself;
         let is_told = by_itself.told.as_ref().is_some_and(|told| Arc::ptr_eq(told, &of.in_use));
         if health.in_use.is_good {
@@ -129,6 +132,10 @@ impl EyesWorkflow {
                 by_itself.told = None;
                 context.notices.add(NoticeLevel::Info, "The calibration of the eyes holds again.");
             }
+            return;
+        }
+        if is_cold {
+            by_itself.bad = None;
             return;
         }
         // How another one looked is none of its doing.

@@ -39,7 +39,7 @@ impl EyesWorkflow {
             proposal: self.proposal.clone(),
             in_use: self.in_use.clone(),
             earlier: self.earlier.clone(),
-            health: self.shown_health(),
+            health: self.shown_health(now),
         }
     }
 
