@@ -156,7 +156,10 @@ fn lost_or_killed_while_it_tries_again_the_record_says_how_the_first_try_ended()
             let Outcome::Failed { failure, .. } = &record.earlier[0].outcome else {
                 panic!("{what} in {at:?}: {:?}", record.earlier[0].outcome)
             };
-            assert_eq!(*failure, Failure::ReachWrong, "{what} in {at:?}");
+            assert!(
+                matches!(failure, Failure::ReachWrong | Failure::Slipped),
+                "{what} in {at:?}: {failure:?}"
+            );
         }
         assert_eq!((left.step, &left.outcome), (Some(at), &None));
         home(&next, &mut world, Toy::Tomato);
