@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use plumbline_model::{StereoCalibration, StereoFrame};
 
+use super::clock::is_live;
 use super::health_by_itself::ByItself;
 use super::view::{EyesHealth, HealthState, HealthView, ProposalHealth};
 use super::warming::Warmth;
@@ -235,7 +236,13 @@ impl EyesWorkflow {
     }
 
     /// Judged, or why not.
-    pub(super) fn judged_health(&mut self, id: JobId, ended: HealthEnded, context: &mut Context<'_>) {
+    pub(super) fn judged_health(
+        &mut self,
+        id: JobId,
+        ended: HealthEnded,
+        around: &EyesAround,
+        context: &mut Context<'_>,
+    ) {
         let HealthEnded { state, busy } = ended;
         let Some(Judging { of, ask, .. }) = self.health.judging.take_if(|judging| judging.job == id) else {
             return;
@@ -243,7 +250,7 @@ impl EyesWorkflow {
         self.rest(busy, context.time.instant);
         if let HealthState::Judged(health) = &state {
             self.health.judged = Some((of.clone(), health.clone()));
-            self.tell_of_health(&of, health, ask, context);
+            self.tell_of_health((&of, health), ask, around, context);
         }
         // That nothing is seen at night is no news where nobody has asked.
         if !ask.by_itself || matches!(state, HealthState::Judged(_)) || !self.has_ended(&of) {
@@ -273,7 +280,7 @@ impl EyesWorkflow {
     }
 
     /// What the window shows of it: of the calibration in use and of the proposal as they are now, and of nothing else.
-    pub(super) fn shown_health(&self, instant: Instant) -> HealthView {
+    pub(super) fn shown_health(&self, around: &EyesAround, instant: Instant) -> HealthView {
         let now = self.to_be_judged();
         let is_of_now = |of: &Of| now.as_ref().is_some_and(|now| of.is(now));
         // Looking again by itself leaves what stands there.
@@ -289,14 +296,15 @@ impl EyesWorkflow {
             (None, Some(_)) => HealthState::Judging,
             (None, None) => ended.map_or(HealthState::NotAsked, |(_, state)| state.clone()),
         };
-        let colder_wait_min = self.to_be_warm_min(instant);
+        let colder_wait_min = self.to_be_warm_min(around, instant);
         HealthView { state, judged: judged.map(|(_, health)| health.clone()), colder_wait_min }
     }
 
     /// In how many minutes the eyes are as warm as when the calibration in use was made; `None`: they are, or nobody knows.
-    pub(super) fn to_be_warm_min(&self, now: Instant) -> Option<f64> {
+    pub(super) fn to_be_warm_min(&self, around: &EyesAround, now: Instant) -> Option<f64> {
         let calibrated_min = self.in_use()?.evidence.as_ref()?.minutes_since_on?;
-        match Warmth::of(self.clock.shown_min(now)?, calibrated_min) {
+        let of_twin_min = around.twin_on_s.filter(|_| is_live(&around.source)).map(|on_s| on_s / 60.0);
+        match Warmth::of(of_twin_min.or_else(|| self.minutes_since_on(around, now))?, calibrated_min) {
             Warmth::Colder { wait_min } => Some(wait_min),
             Warmth::Alike | Warmth::Warmer => None,
         }

@@ -78,6 +78,10 @@ fn cold_eyes_are_not_judged_by_itself_and_nothing_bad_is_said_of_their_calibrati
     (0..300).for_each(|_| desk.see(dark()));
     assert!(desk.started.is_empty(), "they are left alone");
     assert_eq!(desk.view().health.colder_wait_min, Some(5.0), "after five of twelve minutes");
+    // The twin's eyes say themselves for how long they have been on.
+    desk.around.twin_on_s = Some(1200.0);
+    assert_eq!(desk.view().health.colder_wait_min, None);
+    desk.around.twin_on_s = None;
     // Whoever asks is answered, with the time to wait; the calibration is not said to be bad.
     desk.ask(EyesCommand::JudgeHealth);
     desk.until_judging();
