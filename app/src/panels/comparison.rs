@@ -94,21 +94,30 @@ fn columns(ui: &mut Ui, proposed: Column<'_>, in_use: Column<'_>) {
     row(ui, "One pixel in depth", &per_px(&proposed), &per_px(&in_use), false);
 }
 
-/// One line of three columns, the figures aligned at their right ends.
+/// The name beside two figures takes so much of a line, points.
+const NAME: f32 = 120.0;
+/// What the longest figure takes: "30.01 ± 0.61 mm".
+const FIGURE: f32 = 112.0;
+const LINE: f32 = 24.0;
+
+/// One line of three columns, the figures aligned at their right ends; in a narrow panel the name stands over them.
 fn row(ui: &mut Ui, name: &str, proposed: &str, in_use: &str, heading: bool) {
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 24.0), Sense::hover());
+    let is_narrow = ui.available_width() < NAME + 2.0 * FIGURE;
+    let lines = if is_narrow && !heading { 2.0 } else { 1.0 };
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), lines * LINE), Sense::hover());
     response.widget_info(|| {
         WidgetInfo::labeled(egui::Role::Row, true, format!("{name}: proposal {proposed}, in use {in_use}"))
     });
     let tokens = theme::tokens(ui);
     let style = if heading { theme::strong_style(ui) } else { TextStyle::Body };
-    let text = |ui: &Ui, text: &str, x: f32, anchor: Align2, color| {
+    let text = |ui: &Ui, text: &str, [x, y]: [f32; 2], anchor: Align2, color| {
         let font = style.resolve(ui.style());
-        ui.painter().text(egui::pos2(x, rect.center().y), anchor, text, font, color);
+        ui.painter().text(egui::pos2(x, y), anchor, text, font, color);
     };
-    let figures = (rect.width() - 120.0) / 2.0;
-    text(ui, name, rect.left(), Align2::LEFT_CENTER, tokens.text_weak);
-    text(ui, proposed, rect.right() - figures, Align2::RIGHT_CENTER, tokens.text_strong);
+    let figures = if is_narrow { rect.width() / 2.0 } else { (rect.width() - NAME) / 2.0 };
+    let [first_y, last_y] = [rect.top() + 0.5 * LINE, rect.bottom() - 0.5 * LINE];
+    text(ui, name, [rect.left(), first_y], Align2::LEFT_CENTER, tokens.text_weak);
+    text(ui, proposed, [rect.right() - figures, last_y], Align2::RIGHT_CENTER, tokens.text_strong);
     let in_use_color = if heading { tokens.text_strong } else { tokens.text };
-    text(ui, in_use, rect.right(), Align2::RIGHT_CENTER, in_use_color);
+    text(ui, in_use, [rect.right(), last_y], Align2::RIGHT_CENTER, in_use_color);
 }

@@ -24,7 +24,7 @@ pub fn show(ui: &mut Ui, view: &View, outbox: &mut Outbox) {
         HealthState::Gathering { pairs, of } => busy(ui, &format!("Looks: {pairs} of {of} pairs.")),
         HealthState::Judging => busy(ui, "Compares what both eyes see."),
         HealthState::Failed(why) => warning(ui, why),
-        HealthState::Judged(health) => judged(ui, health),
+        HealthState::Judged(health) => judged(ui, health, view.eyes.health.colder_wait_min),
     }
     // What is not offered is said where it would be.
     let against = view.eyes.health.is_against_proposal();
@@ -47,8 +47,8 @@ fn busy(ui: &mut Ui, text: &str) {
     });
 }
 
-fn judged(ui: &mut Ui, health: &EyesHealth) {
-    let said = words::in_use(health);
+fn judged(ui: &mut Ui, health: &EyesHealth, colder_wait_min: Option<f64>) {
+    let said = words::in_use(health, colder_wait_min);
     if health.in_use.is_good {
         ui.label(said);
     } else {

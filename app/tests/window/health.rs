@@ -36,7 +36,7 @@ fn judged(in_use_m: f64, proposed: Option<(f64, ProposalHealth)>) -> HealthState
 
 fn with(state: HealthState) -> View {
     let judged = if let HealthState::Judged(health) = &state { Some(health.clone()) } else { None };
-    with_health(HealthView { state, judged })
+    with_health(HealthView { state, judged, colder_wait_min: None })
 }
 
 /// A calibration is in use, and another one proposed.
@@ -92,6 +92,17 @@ fn it_is_asked_for_beside_drift_and_answered_in_centimeters() {
 }
 
 #[test]
+fn cold_eyes_are_told_to_wait_instead_of_being_calibrated_again() {
+    let HealthState::Judged(health) = judged(0.04, None) else { unreachable!("just made") };
+    let state = HealthState::Judged(health.clone());
+    let health = HealthView { state, judged: Some(health), colder_wait_min: Some(11.0) };
+    let fake = Fake::over(with_health(health));
+    let window = fake.window(on(Screen::Drift));
+    assert!(says(&window, "Wait 11 min, then ask again.") && says(&window, "off by 1.0 cm near"));
+    assert!(!says(&window, "Calibrate the eyes again"));
+}
+
+#[test]
 fn while_it_is_computed_it_is_not_asked_for_again_and_while_pairs_are_gathered_it_begins_anew() {
     for (state, sent) in [
         (HealthState::Judging, vec![]),
@@ -114,7 +125,11 @@ fn a_proposal_that_was_not_better_stays_so_while_it_is_judged_again_and_when_tha
         HealthState::Judging,
         HealthState::Failed("Is the light on?".to_owned()),
     ] {
-        let fake = Fake::over(with_health(HealthView { state, judged: Some(health.clone()) }));
+        let fake = Fake::over(with_health(HealthView {
+            state,
+            judged: Some(health.clone()),
+            ..HealthView::default()
+        }));
         let window = fake.window(on(Screen::Accept));
         assert!(says(&window, "is worse than") && !shows(&window, "Accept calibration"));
     }

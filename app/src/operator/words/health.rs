@@ -3,11 +3,18 @@
 use plumbline_engine::view::{EyesHealth, EyesView, HealthFigures, ProposalHealth};
 use plumbline_widgets::format;
 
-/// How far off the calibration in use puts places, and whether that is still good.
-pub fn in_use(health: &EyesHealth) -> String {
+/// How far off the calibration in use puts places, and whether that is still good; `colder_wait_min`: the eyes are colder than
+/// when it was made, for so many minutes more.
+pub fn in_use(health: &EyesHealth, colder_wait_min: Option<f64>) -> String {
     let off = off(&health.in_use);
     if health.in_use.is_good {
         return format!("The calibration in use is still good: places are off by {off}.");
+    }
+    if let Some(wait_min) = colder_wait_min {
+        return format!(
+            "The eyes are colder than when the calibration in use was made: until they are as warm, places are off by \
+             {off}. Wait {wait_min:.0} min, then ask again."
+        );
     }
     format!(
         "The calibration in use is not good any more: places are off by {off}. The right eye has turned by {}. Calibrate \

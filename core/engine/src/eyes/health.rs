@@ -7,8 +7,10 @@ use std::time::{Duration, Instant};
 use jiff::Timestamp;
 use plumbline_model::{StereoCalibration, StereoFrame};
 
+use super::clock::is_live;
 use super::health_by_itself::ByItself;
 use super::view::{EyesHealth, HealthState, HealthView, ProposalHealth};
+use super::warming::Warmth;
 use super::work::{Context, EyesWork, Health, HealthEnded, Pictures};
 use super::workflow::{EyesAround, EyesWorkflow};
 use crate::ground::jobs::JobId;
@@ -237,7 +239,13 @@ impl EyesWorkflow {
     }
 
     /// Judged, or why not.
-    pub(super) fn judged_health(&mut self, id: JobId, ended: HealthEnded, context: &mut Context<'_>) {
+    pub(super) fn judged_health(
+        &mut self,
+        id: JobId,
+        ended: HealthEnded,
+        around: &EyesAround,
+        context: &mut Context<'_>,
+    ) {
         let HealthEnded { state, busy } = ended;
         let Some(Judging { of, ask, .. }) = self.health.judging.take_if(|judging| judging.job == id) else {
             return;
@@ -245,7 +253,11 @@ impl EyesWorkflow {
         self.rest(busy, context.time.instant);
         if let HealthState::Judged(health) = &state {
             self.health.judged = Some((of.clone(), health.clone()));
-            if self.tell_of_health(&of, health, ask, context) || !ask.by_itself {
+            let is_told = self.tell_of_health((&of, health), ask, around, context);
+            // What cold eyes see says nothing of a calibration that was made warm.
+            let says_something =
+                health.in_use.is_good || self.to_be_warm_min(around, context.time.instant).is_none();
+            if (is_told || !ask.by_itself) && says_something {
                 self.health.told = Some((context.time.day, health.clone()));
             }
         }
@@ -282,7 +294,7 @@ impl EyesWorkflow {
     }
 
     /// What the window shows of it: of the calibration in use and of the proposal as they are now, and of nothing else.
-    pub(super) fn shown_health(&self) -> HealthView {
+    pub(super) fn shown_health(&self, around: &EyesAround, instant: Instant) -> HealthView {
         let now = self.to_be_judged();
         let is_of_now = |of: &Of| now.as_ref().is_some_and(|now| of.is(now));
         // Looking again by itself leaves what stands there.
@@ -298,12 +310,25 @@ impl EyesWorkflow {
             (None, Some(_)) => HealthState::Judging,
             (None, None) => ended.map_or(HealthState::NotAsked, |(_, state)| state.clone()),
         };
-        HealthView { state, judged: judged.map(|(_, health)| health.clone()) }
+        let colder_wait_min = self.to_be_warm_min(around, instant);
+        HealthView { state, judged: judged.map(|(_, health)| health.clone()), colder_wait_min }
+    }
+
+    /// In how many minutes the eyes are as warm as when the calibration in use was made; `None`: they are, or nobody knows.
+    pub(super) fn to_be_warm_min(&self, around: &EyesAround, now: Instant) -> Option<f64> {
+        let calibrated_min = self.in_use()?.evidence.as_ref()?.minutes_since_on?;
+        let of_twin_min = around.twin_on_s.filter(|_| is_live(&around.source)).map(|on_s| on_s / 60.0);
+        match Warmth::of(of_twin_min.or_else(|| self.minutes_since_on(around, now))?, calibrated_min) {
+            Warmth::Colder { wait_min } => Some(wait_min),
+            Warmth::Alike | Warmth::Warmer => None,
+        }
     }
 
     /// Why the proposal is not offered; `None`: it is, or nobody has judged it.
     pub(super) fn not_offered(&self) -> Option<&'static str> {
-        match self.shown_health().judged?.proposed?.1 {
+        let of = self.to_be_judged()?;
+        let (_, judged) = self.health.judged.as_ref().filter(|(judged, _)| judged.is(&of))?;
+        match judged.proposed?.1 {
             ProposalHealth::Better | ProposalHealth::Untold | ProposalHealth::KnowsWhen => None,
             ProposalHealth::Worse => Some(
                 "The proposed calibration fits what the eyes see worse than the one in use: it is not put in use. \

@@ -73,7 +73,9 @@ impl EyesWorkflow {
         let is_proposed = self.has_unseen_proposal();
         // Watching drift says itself when the eyes turn, with the same share; and what a law of time takes off, the
         // calibration alone does not know.
-        let is_needed = is_proposed || !(around.is_watched || around.is_corrected);
+        // Cold eyes do not see as they did when they were calibrated warm, and will again.
+        let is_cold = self.to_be_warm_min(around, now).is_some();
+        let is_needed = is_proposed || !(around.is_watched || around.is_corrected || is_cold);
         if !sees_now || around.arm_moves || !is_needed {
             return self.put_off(now);
         }
@@ -116,11 +118,12 @@ impl EyesWorkflow {
     /// Says once that the calibration in use does not hold any more, and that it does again; whether it did.
     pub(super) fn tell_of_health(
         &mut self,
-        of: &Of,
-        health: &EyesHealth,
+        (of, health): (&Of, &EyesHealth),
         ask: Ask,
+        around: &EyesAround,
         context: &mut Context<'_>,
     ) -> bool {
+        let is_cold = self.to_be_warm_min(around, context.time.instant).is_some();
         let by_itself = &mut self.health.by_itself;
         let is_told = by_itself.told.as_ref().is_some_and(|told| Arc::ptr_eq(told, &of.in_use));
         if health.in_use.is_good {
@@ -130,6 +133,10 @@ impl EyesWorkflow {
                 context.notices.add(NoticeLevel::Info, "The calibration of the eyes holds again.");
             }
             return is_told;
+        }
+        if is_cold {
+            by_itself.bad = None;
+            return false;
         }
         // How another one looked is none of its doing.
         let before = by_itself.bad.take().filter(|(bad, _)| Arc::ptr_eq(bad, &of.in_use));

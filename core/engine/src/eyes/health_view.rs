@@ -9,6 +9,9 @@ pub struct HealthView {
     pub state: HealthState,
     /// What was judged last, also while it is looked at again; `None`: nothing yet, or of other calibrations.
     pub judged: Option<Arc<EyesHealth>>,
+    /// The eyes are colder than when the calibration in use was made, and as warm after so many minutes: what it is off by
+    /// until then says nothing of it. `None`: they are not, or nobody knows.
+    pub colder_wait_min: Option<f64>,
 }
 
 impl HealthView {

@@ -9,21 +9,24 @@ use super::workflow::{EyesAround, EyesWorkflow};
 use crate::ground::step::StepState;
 
 impl EyesWorkflow {
+    /// For how long the eyes that are looked through have been on, min; `None`: nobody knows.
+    pub(super) fn minutes_since_on(&self, around: &EyesAround, now: Instant) -> Option<f64> {
+        if is_live(&around.source) {
+            return self.clock.shown_min(now);
+        }
+        let recorded = around.newest.as_ref().and_then(|newest| newest.beside.then?.on_s);
+        // By whole seconds, as of a clock that runs.
+        recorded.map(|on_s| on_s.floor() / 60.0).or(self.minutes_of_pairs)
+    }
+
     /// What the window shows.
     pub(super) fn shown(&self, around: &EyesAround, now: Instant) -> EyesView {
-        let recorded = around.newest.as_ref().and_then(|newest| newest.beside.then?.on_s);
-        let minutes_since_on = if is_live(&around.source) {
-            self.clock.shown_min(now)
-        } else {
-            // By whole seconds, as of a clock that runs.
-            recorded.map(|on_s| on_s.floor() / 60.0).or(self.minutes_of_pairs)
-        };
         EyesView {
             step: self.step(),
             board: *self.board(),
             board_chosen: self.board_chosen,
             options: self.options.clone(),
-            minutes_since_on,
+            minutes_since_on: self.minutes_since_on(around, now),
             board_seen: self.board_seen.clone(),
             auto_capture: self.auto_capture,
             capture_ended: self.capture_ended,
@@ -39,7 +42,7 @@ impl EyesWorkflow {
             proposal: self.proposal.clone(),
             in_use: self.in_use.clone(),
             earlier: self.earlier.clone(),
-            health: self.shown_health(),
+            health: self.shown_health(around, now),
         }
     }
 

@@ -356,7 +356,7 @@ impl Workflow for EyesWorkflow {
         self.refresh();
     }
 
-    fn work_done(&mut self, id: JobId, result: EyesResult, _: &EyesAround, context: &mut Context<'_>) {
+    fn work_done(&mut self, id: JobId, result: EyesResult, around: &EyesAround, context: &mut Context<'_>) {
         self.busy.forget(id);
         match result {
             EyesResult::Captured(captured) => self.captured(captured, context),
@@ -366,7 +366,7 @@ impl Workflow for EyesWorkflow {
             EyesResult::Solved(solved) => self.solved(solved),
             EyesResult::Opened(opened) => self.opened(opened),
             EyesResult::Accepted(accepted) => self.accepted_now(accepted),
-            EyesResult::Health(ended) => self.judged_health(id, ended, context),
+            EyesResult::Health(ended) => self.judged_health(id, ended, around, context),
             EyesResult::Exported(_) => {}
             EyesResult::Restored(restored) => self.restored(restored, context),
             EyesResult::UsedEarlier(restored) => {

@@ -33,15 +33,12 @@ impl Running<'_> {
             // The try is over and has failed, whatever ends the hold after it.
             return Err(not_again(failure, &why, held));
         }
-        self.start(Step::Again);
-        self.body.wait(SAID_S)?;
-        self.follow(Step::Again, std::slice::from_ref(&opened), AIR_RAD_S)?;
-        self.follow(Step::Again, &back, AIR_RAD_S)?;
         let stood = self.record.standing_m.or(self.near_m);
         self.near_m = looked_for_near(&self.record.seen, &self.order.object, stood);
         if failure == Failure::ReachWrong {
             self.lower_m += LOWER_M;
         }
+        // Before anything moves: whatever ends it then, the record says how the try before ended.
         let first = Outcome::Failed { failure, why: why.clone() };
         self.record.earlier.push(Earlier {
             hand: self.record.hand,
@@ -52,6 +49,10 @@ impl Running<'_> {
         });
         self.record.seen_after.clear();
         self.record.seen_after_at_s = None;
+        self.start(Step::Again);
+        self.body.wait(SAID_S)?;
+        self.follow(Step::Again, std::slice::from_ref(&opened), AIR_RAD_S)?;
+        self.follow(Step::Again, &back, AIR_RAD_S)?;
         match self.try_once() {
             Err(End::Failed(Failure::Halted, halted)) => Err(End::Failed(Failure::Halted, halted)),
             Err(End::Failed(_, second) | End::Refused(second)) => {

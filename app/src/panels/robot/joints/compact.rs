@@ -2,7 +2,7 @@
 
 use egui::Ui;
 use plumbline_engine::view::JointView;
-use plumbline_widgets::format::{self, Quantity};
+use plumbline_widgets::format;
 use plumbline_widgets::theme;
 
 use super::proposing::{preview_angle, propose};
@@ -48,7 +48,7 @@ fn figures(ui: &mut Ui, joint: &JointView) {
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
         let warm = joint.temperature_c.map(|warm| format!("{} °C", format::fixed(warm, 0)));
         ui.label(theme::small(ui, warm.unwrap_or_else(|| format::NONE.to_owned())));
-        ui.label(Quantity::Angle.text_or_none(joint.angle_rad));
+        ui.label(joint.angle_rad.map_or_else(|| format::NONE.to_owned(), format::joint_degrees));
     });
 }
 

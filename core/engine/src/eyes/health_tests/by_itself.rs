@@ -69,3 +69,34 @@ fn how_another_calibration_looked_is_not_counted() {
     desk.looks_bad();
     assert_eq!(desk.said().len(), 1);
 }
+
+#[test]
+fn cold_eyes_are_not_judged_by_itself_and_nothing_bad_is_said_of_their_calibration() {
+    let mut desk = Desk::new(0.6);
+    desk.calibrated_after(25.0);
+    desk.room.clock.say(Some(2.0), desk.time);
+    (0..300).for_each(|_| desk.see(dark()));
+    assert!(desk.started.is_empty(), "they are left alone");
+    assert_eq!(desk.view().health.colder_wait_min, Some(5.0), "after five of twelve minutes");
+    // The twin's eyes say themselves for how long they have been on.
+    desk.around.twin_on_s = Some(1200.0);
+    assert_eq!(desk.view().health.colder_wait_min, None);
+    desk.around.twin_on_s = None;
+    // Whoever asks is answered, with the time to wait; the calibration is not said to be bad.
+    desk.ask(EyesCommand::JudgeHealth);
+    desk.until_judging();
+    desk.looks_bad();
+    assert_eq!(desk.said(), Vec::<String>::new());
+    // Warm, it is judged as ever, and what looks bad twice is told.
+    (0..300).for_each(|_| {
+        if desk.started.is_empty() {
+            desk.see(dark());
+        }
+    });
+    assert_eq!(desk.view().health.colder_wait_min, None);
+    desk.looks_bad();
+    assert_eq!(desk.said().len(), 0, "a hand before an eye is no turned eye");
+    desk.until_judging();
+    desk.looks_bad();
+    assert_eq!(desk.said().len(), 1);
+}

@@ -86,6 +86,14 @@ impl Desk {
         }));
     }
 
+    /// The calibration in use says that the cameras had been on for so long.
+    fn calibrated_after(&mut self, minutes: f64) {
+        let in_use = self.room.in_use.as_ref().expect("one is in use");
+        let calibration = timed(&in_use.calibration, minutes);
+        self.room.in_use =
+            Some(Arc::new(AcceptedCalibration { calibration, ..AcceptedCalibration::clone(in_use) }));
+    }
+
     fn with(&mut self, act: impl FnOnce(&mut EyesWorkflow, &EyesAround, &mut super::work::Context<'_>)) {
         let mut asked: Vec<Asked<EyesWork, Nothing>> = vec![];
         let Self { room, around, notices, jobs, time, .. } = self;
@@ -264,6 +272,21 @@ fn dark() -> [Arc<RgbImage>; 2] {
 fn frame([left, right]: [Arc<RgbImage>; 2], time: Time) -> StereoFrame {
     let stamp = Stamp { seq: 1, captured_at: time.instant };
     StereoFrame { stamp, left, right, time_difference_s: None, name: None, beside: Default::default() }
+}
+
+/// The same, made when the cameras had been on for so long.
+fn timed(calibration: &StereoCalibration, minutes: f64) -> Arc<StereoCalibration> {
+    let evidence = Evidence {
+        board: default_board(),
+        options: CalibrationOptions::default(),
+        observations: vec![],
+        dropped_pairs: vec![],
+        created: jiff::Timestamp::UNIX_EPOCH,
+        software: String::new(),
+        minutes_since_on: Some(minutes),
+        source: String::new(),
+    };
+    Arc::new(StereoCalibration { evidence: Some(evidence), ..calibration.clone() })
 }
 
 #[test]
@@ -486,18 +509,7 @@ fn one_that_cannot_be_told_apart_is_offered_where_it_alone_says_how_warm_the_eye
     let mut desk = Desk::new(0.0);
     desk.propose(5e-4);
     let proposal = desk.room.proposal.as_ref().expect("proposed");
-    let mut calibration = StereoCalibration::clone(&proposal.calibration);
-    calibration.evidence = Some(Evidence {
-        board: default_board(),
-        options: CalibrationOptions::default(),
-        observations: vec![],
-        dropped_pairs: vec![],
-        created: jiff::Timestamp::UNIX_EPOCH,
-        software: String::new(),
-        minutes_since_on: Some(20.0),
-        source: String::new(),
-    });
-    let calibration = Arc::new(calibration);
+    let calibration = timed(&proposal.calibration, 20.0);
     desk.room.proposal = Some(Arc::new(Proposal { calibration, ..Proposal::clone(proposal) }));
     let health = desk.health();
     assert_eq!(health.proposed.map(|(_, verdict)| verdict), Some(ProposalHealth::KnowsWhen), "{health:?}");

@@ -115,6 +115,60 @@ fn the_bus_lost_or_the_program_killed_in_any_step_the_arm_holds_and_the_next_gra
     }
 }
 
+/// Moves the thing away before the hand closes for the first time; breaks off what comes when it is tried again.
+struct BreaksAgain {
+    breaks: Breaks,
+    is_again: bool,
+}
+
+impl Meddler for BreaksAgain {
+    fn moves(&mut self, step: Step, way: &[Posture], twin: &mut Lockstep) -> Result<(), Halt> {
+        if self.is_again {
+            return self.breaks.moves(step, way, twin);
+        }
+        if step == Step::Close {
+            twin.place_toy(Toy::Tomato, EASY_M[0], EASY_M[1] + 0.12).expect("on the table");
+        }
+        Ok(())
+    }
+
+    fn keeps(&mut self, record: &Record) {
+        self.is_again |= record.step == Some(Step::Again);
+        self.breaks.keeps(record);
+    }
+}
+
+#[test]
+fn lost_or_killed_while_it_tries_again_the_record_says_how_the_first_try_ended() {
+    let (mut bench, mut next) = (perfect(), perfect());
+    let task = task(Method::M5, Toy::Tomato, EASY_M);
+    let mut world = bench.world(&task).expect("a world");
+    for at in [Step::Again, Step::Approach, Step::Lift] {
+        let breaks = Breaks::new(at, Halt::Lost("the bus does not answer".to_owned()));
+        let mut meddler = BreaksAgain { breaks, is_again: false };
+        let (record, _) = bench.attempt_in(&mut world, &task, &mut meddler).expect("nothing is kept");
+        assert!(meddler.is_again && meddler.breaks.is_broken, "{at:?}: {:?}", record.outcome);
+        assert_eq!((failure(&record), record.step), (Some(Failure::Halted), Some(at)));
+        assert_holds(&format!("again, {at:?}"), &bench, &mut world);
+        let left: Record = serde_json::from_str(meddler.breaks.kept.last().expect("kept")).expect("a record");
+        for (what, record) in [("ended", &record), ("killed", &left)] {
+            assert_eq!(record.earlier.len(), 1, "{what} in {at:?}");
+            let Outcome::Failed { failure, .. } = &record.earlier[0].outcome else {
+                panic!("{what} in {at:?}: {:?}", record.earlier[0].outcome)
+            };
+            assert!(
+                matches!(failure, Failure::ReachWrong | Failure::Slipped),
+                "{what} in {at:?}: {failure:?}"
+            );
+        }
+        assert_eq!((left.step, &left.outcome), (Some(at), &None));
+        home(&next, &mut world, Toy::Tomato);
+        let (record, judged) = next.attempt_in(&mut world, &task, &mut ()).expect("nothing is kept");
+        assert!(judged.lifted && record.is_success(), "after {at:?}: {:?}", record.outcome);
+        home(&next, &mut world, Toy::Tomato);
+    }
+}
+
 #[test]
 fn before_each_step_goes_to_disk_how_far_it_came() {
     let mut bench = perfect();

@@ -1,0 +1,71 @@
+//! Whether the eyes are as warm as when they were calibrated: lenses turn in their mounts while they get
+//! warm.
+
+/// Housings of eyes reach their temperature with about this time constant, min: twenty minutes are 95 %
+/// of the way.
+const WARMING_MIN: f64 = 6.7;
+/// A difference of more than this share of the whole way is worth a word: on the lab's twin, whose eyes
+/// turn against each other by 10 mrad on the whole way, this share is 4 mm of depth at 0.45 m.
+const SHARE: f64 = 0.15;
+
+/// How warm the eyes are, beside how warm they were when they were calibrated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Warmth {
+    /// About as warm.
+    Alike,
+    /// Colder.
+    Colder {
+        /// They are about as warm after so many minutes more.
+        wait_min: f64,
+    },
+    /// Warmer.
+    Warmer,
+}
+
+impl Warmth {
+    /// Of eyes that have been on for so many minutes, calibrated after so many.
+    pub fn of(on_min: f64, calibrated_min: f64) -> Self {
+        let off = share(on_min) - share(calibrated_min);
+        if off < -SHARE {
+            let enough_min = -WARMING_MIN * (1.0 - (share(calibrated_min) - SHARE)).ln();
+            Self::Colder { wait_min: (enough_min - on_min).ceil().max(1.0) }
+        } else if off > SHARE {
+            Self::Warmer
+        } else {
+            Self::Alike
+        }
+    }
+}
+
+/// Share of the way from cold to warm.
+fn share(on_min: f64) -> f64 {
+    1.0 - (-on_min / WARMING_MIN).exp()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whoever_waits_as_long_as_was_said_has_eyes_as_warm_as_then() {
+        for (on_min, calibrated_min) in [(0.0, 25.0), (2.0, 25.0), (1.0, 8.0), (5.0, 300.0)] {
+            let Warmth::Colder { wait_min } = Warmth::of(on_min, calibrated_min) else {
+                panic!("{on_min} {calibrated_min}")
+            };
+            assert_eq!(
+                Warmth::of(on_min + wait_min, calibrated_min),
+                Warmth::Alike,
+                "{on_min} {calibrated_min}"
+            );
+            assert!(wait_min >= 1.0 && on_min + wait_min < calibrated_min, "{wait_min}");
+        }
+    }
+
+    #[test]
+    fn alike_and_warmer() {
+        for (on_min, calibrated_min) in [(30.0, 25.0), (3.0, 3.5), (600.0, 20.0)] {
+            assert_eq!(Warmth::of(on_min, calibrated_min), Warmth::Alike, "{on_min} {calibrated_min}");
+        }
+        assert_eq!(Warmth::of(40.0, 3.0), Warmth::Warmer);
+    }
+}
