@@ -225,7 +225,7 @@ pub fn wishes<K: Kinds>(cases: usize, seed: u64, plans: &[Plan]) -> Vec<Wish<K>>
                 Family::OffLibrary => next(&mut nameless, K::NAMELESS, plan, &mut random),
                 _ => None,
             };
-            let (dirt, repeated) = (turn % 2 == 1, (turn / 2) % 2 == 0);
+            let (dirt, repeated) = (turn % 2 == 1, (turn / 2).is_multiple_of(2));
             Wish { number, family, plan, dirt, repeated, size_sigmas, kind, seed: random.random() }
         })
         .collect()

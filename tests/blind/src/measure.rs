@@ -6,6 +6,9 @@ use nalgebra::{DMatrix, DVector, Matrix6, Vector3, Vector6};
 use crate::bench::Bench;
 use crate::stage::Met;
 
+/// A direction of which others leave less than this is none of its own.
+const OWN_SHARE: f64 = 1e-6;
+
 /// What a touch says beyond the description: along u, against v, out of the glass, m.
 pub fn residual_m(bench: &Bench, met: &Met, height_m: f64) -> Vector3<f64> {
     let tip = bench.nominal_tip_m(&met.encoder_rad);
@@ -68,23 +71,21 @@ pub fn spread(residuals: &[Vec<f64>]) -> Vec<f64> {
 /// What is left of changes once the part is taken off that columns of what nobody knows explain. All of it is divided
 /// by sigma already.
 pub fn beside(moved: &DVector<f64>, unknown: &DMatrix<f64>) -> DVector<f64> {
-    if unknown.ncols() == 0 {
-        return moved.clone();
-    }
-    // Columns of very different sizes: meters, radians, pixels.
-    let mut columns = unknown.clone();
-    for mut column in columns.column_iter_mut() {
-        let length = column.norm();
-        if length > 0.0 {
-            column /= length;
+    let mut apart: Vec<DVector<f64>> = vec![];
+    for column in unknown.column_iter() {
+        let left = without(&apart, column.clone_owned());
+        // What columns before explain, up to rounding, is no direction of its own.
+        if left.norm() > OWN_SHARE * column.norm() {
+            apart.push(left.normalize());
         }
     }
-    let svd = columns.svd(true, false);
-    let mut left = moved.clone();
-    for (k, value) in svd.singular_values.iter().enumerate() {
-        if let Some(along) = svd.u.as_ref().map(|u| u.column(k)).filter(|_| *value > 1e-6) {
-            left -= along * along.dot(moved);
-        }
+    without(&apart, moved.clone())
+}
+
+/// What is left beside directions that are square to each other; twice, since once leaves roundings (Gram and Schmidt).
+fn without(apart: &[DVector<f64>], mut left: DVector<f64>) -> DVector<f64> {
+    for direction in apart.iter().chain(apart) {
+        left.axpy(-direction.dot(&left), direction, 1.0);
     }
     left
 }

@@ -151,12 +151,12 @@ impl Setup {
                     .map(|secret| secret.amount)
                     .sum();
                 let (mut motors_rad, mut encoder_rad) = (vec![], vec![]);
-                for j in 0..way.len() {
+                for (j, way) in way.iter().enumerate() {
                     let short_rad = SHORT_RAD * (0.5 + 0.25 * draw()).clamp(0.0, 1.0);
-                    let stands = cell.goals_rad[j] - way[j] * short_rad;
+                    let stands = cell.goals_rad[j] - way * short_rad;
                     motors_rad.push(stands + JOINT_RAD * draw());
                     let left_rad = early_s * cell.speed_rad_s[j] * (1.0 + 0.08 * draw());
-                    encoder_rad.push(((stands - way[j] * left_rad) / TICK_RAD).round() * TICK_RAD);
+                    encoder_rad.push(((stands - way * left_rad) / TICK_RAD).round() * TICK_RAD);
                 }
                 let moment = Moment {
                     motors_rad,
@@ -237,7 +237,7 @@ impl Setup {
         let measured = self.external_from_base * met.base_from_marker;
         let at: Point3<f64> = measured.translation.vector.into();
         // Devices give either sign of a quaternion.
-        let sign = if met.cell % 2 == 0 { 1.0 } else { -1.0 };
+        let sign = if met.cell.is_multiple_of(2) { 1.0 } else { -1.0 };
         let turn = UnitQuaternion::new_unchecked(Quaternion::from(measured.rotation.coords * sign));
         let some = |values: &[f64]| values.iter().copied().map(Some).collect::<Vec<_>>();
         PoseRow {

@@ -16,11 +16,10 @@ const WATCH_S: f64 = 45.0;
 const WATCHED: usize = 28;
 /// What is seen, and how well it is found, px.
 const THINGS: [(&str, f64); 3] = [("board corner", 0.1), ("toy", 0.4), ("fingertip", 0.6)];
-/// Known places are off by this share of what the noise does at arm's length.
+/// Known places are off by this share of what the noise does at their distance.
 const PLACE_SHARE: f64 = 0.2;
-/// Pixels per radian, and arm's length, m: what a pixel is on the table.
+/// Pixels per radian: what a pixel is at a distance.
 const PX_PER_RAD: f64 = 150.0;
-const ARM_M: f64 = 0.5;
 
 /// A thing at a place, seen once or several times.
 #[derive(Clone, Debug)]
@@ -122,7 +121,7 @@ impl Session {
             .map(|_| {
                 let place =
                     Point3::new(random.random_range(0.3..0.55), random.random_range(-0.25..0.25), 0.06);
-                [place, self.told(&place, random)]
+                [place, self.told(head, &head.rest_rad, &place, random)]
             })
             .collect();
         let rest = &head.rest_rad;
@@ -148,10 +147,9 @@ impl Session {
         t_secs: &mut f64,
         random: &mut StdRng,
     ) {
-        debug_assert_eq!(to.len(), head.rest_rad.len(), "the same neck");
         let set = self.sets.len();
         self.sets.push(name);
-        let told: Vec<Point3<f64>> = places.iter().map(|place| self.told(place, random)).collect();
+        let told: Vec<Point3<f64>> = places.iter().map(|place| self.told(head, to, place, random)).collect();
         for _ in 0..if self.is_repeated { repeats } else { 1 } {
             for (k, (place_m, told_m)) in places.iter().zip(&told).enumerate() {
                 let look = Look { neck_rad: to.clone(), from_rad: from.clone(), t_secs: *t_secs, set };
@@ -162,9 +160,10 @@ impl Session {
         self.cells += places.len();
     }
 
-    /// Where somebody writes that a thing is.
-    fn told(&self, place: &Point3<f64>, random: &mut StdRng) -> Point3<f64> {
-        let sd_m = PLACE_SHARE * self.noise_px / PX_PER_RAD * ARM_M;
+    /// Where somebody writes that a thing is, which a head in this posture looks at.
+    fn told(&self, head: &Head, neck_rad: &[f64], place: &Point3<f64>, random: &mut StdRng) -> Point3<f64> {
+        let range_m = (head.robot_from_left(neck_rad).inverse() * place).coords.norm();
+        let sd_m = PLACE_SHARE * self.noise_px / PX_PER_RAD * range_m;
         place + Vector3::from_fn(|_, _| sd_m * normal(random))
     }
 }
