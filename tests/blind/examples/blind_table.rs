@@ -1,6 +1,6 @@
 //! Makes blind cases, searches each, scores the answers and prints the table.
 //!
-//! `cargo run --release -p plumbline-blind --example blind_table -- [--generator lean|worn] [--cases N] [--seed S]
+//! `cargo run --release -p plumbline-blind --example blind_table -- [--generator lean|worn|arms|eyes] [--cases N] [--seed S]
 //! [--only single,pair,…] [--plan plain|rich] [--first N] [--no-show] [--list]`
 //!
 //! Cases are kept under `target/blind`, so that a search can be repeated without the physics.
@@ -10,14 +10,15 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use plumbline_blind::answer::Answer;
+use plumbline_blind::answer::{Answer, Plan, Source};
 use plumbline_blind::bench::Bench;
-use plumbline_blind::case;
+use plumbline_blind::case::{self, Case};
 use plumbline_blind::design::Planner;
+use plumbline_blind::hide::{Kinds, Wish};
 use plumbline_blind::physics::Generator;
-use plumbline_blind::recipe::Recipe;
+use plumbline_blind::recipe::Family;
 use plumbline_blind::score::{Score, Verdict};
-use plumbline_blind::{mix, table, words};
+use plumbline_blind::{BlindError, arms, eyes, mix, table, words};
 use plumbline_gap::Options;
 
 #[path = "../judge/mod.rs"]
@@ -25,11 +26,11 @@ mod judge;
 use judge::AnyError;
 
 /// Cases are made anew when the physics changes.
-const PHYSICS: &str = "v7";
+const PHYSICS: &str = "v8";
 const THREADS: usize = 2;
 
 struct Arguments {
-    generator: Generator,
+    generator: Source,
     cases: usize,
     seed: u64,
     only: Option<Vec<String>>,
@@ -41,7 +42,7 @@ struct Arguments {
 
 fn arguments() -> Result<Arguments, AnyError> {
     let mut read = Arguments {
-        generator: Generator::Lean,
+        generator: Source::Lean,
         cases: 200,
         seed: 1000,
         only: None,
@@ -74,25 +75,27 @@ fn main() -> Result<(), AnyError> {
     let generator: &str = arguments.generator.into();
     let folder =
         target.join("blind").join(format!("{PHYSICS}-{generator}-{}-{}", arguments.seed, arguments.cases));
-    let recipes: Vec<Recipe> = mix::recipes(arguments.generator, arguments.cases, arguments.seed)
+    let bench = Bench::usual()?;
+    let planner = Planner::new(&bench)?;
+    let orders: Vec<Order<'_>> = orders(&arguments, &bench, &planner)
         .into_iter()
         .skip(arguments.first)
-        .filter(|recipe| {
-            arguments.only.as_ref().is_none_or(|only| only.contains(&words::word(recipe.family)))
-                && arguments.plan.as_ref().is_none_or(|plan| *plan == words::word(recipe.design))
+        .filter(|order| {
+            arguments.only.as_ref().is_none_or(|only| only.contains(&words::word(order.family)))
+                && arguments.plan.as_ref().is_none_or(|plan| *plan == words::word(order.plan))
         })
         .collect();
-    make_missing(&recipes, &folder)?;
+    make_missing(&orders, &folder);
     let options = Options { show: arguments.show, advise: false, ..Options::default() };
     let next = AtomicUsize::new(0);
     let judged: Vec<Vec<(usize, Result<Verdict, String>)>> = std::thread::scope(|scope| {
         let work = || {
             let mut judged = vec![];
-            while let Some(recipe) = recipes.get(next.fetch_add(1, Ordering::Relaxed)) {
+            while let Some(order) = orders.get(next.fetch_add(1, Ordering::Relaxed)) {
                 let verdict =
-                    judge::search(&folder.join("cases").join(format!("{:03}", recipe.number)), &options)
+                    judge::search(&folder.join("cases").join(format!("{:03}", order.number)), &options)
                         .map_err(|error| error.to_string());
-                judged.push((recipe.number, verdict));
+                judged.push((order.number, verdict));
             }
             judged
         };
@@ -129,34 +132,69 @@ fn answer_file(folder: &Path, number: usize) -> PathBuf {
     folder.join("answers").join(format!("{number:03}.json"))
 }
 
-/// Makes the cases that are not there yet.
-fn make_missing(recipes: &[Recipe], folder: &Path) -> Result<(), AnyError> {
-    let missing: Vec<&Recipe> =
-        recipes.iter().filter(|recipe| !answer_file(folder, recipe.number).exists()).collect();
-    if missing.is_empty() {
-        return Ok(());
+/// A case that shall be judged.
+struct Order<'a> {
+    number: usize,
+    family: Family,
+    plan: Plan,
+    make: Box<dyn Fn() -> Result<Case, BlindError> + Send + Sync + 'a>,
+}
+
+/// Cases of a generator.
+fn orders<'a>(arguments: &Arguments, bench: &'a Bench, planner: &'a Planner<'a>) -> Vec<Order<'a>> {
+    let touches = |generator| {
+        let recipes = mix::recipes(generator, arguments.cases, arguments.seed);
+        let order = |recipe: plumbline_blind::recipe::Recipe| Order {
+            number: recipe.number,
+            family: recipe.family,
+            plan: recipe.design.into(),
+            make: Box::new(move || case::make_or_smaller(bench, planner, &recipe)),
+        };
+        recipes.into_iter().map(order).collect()
+    };
+    match arguments.generator {
+        Source::Lean => touches(Generator::Lean),
+        Source::Worn => touches(Generator::Worn),
+        Source::Arms => of_wishes(arms::recipes(arguments.cases, arguments.seed), arms::make),
+        Source::Eyes => of_wishes(eyes::recipes(arguments.cases, arguments.seed), eyes::make),
     }
-    let bench = Bench::usual()?;
-    let planner = Planner::new(&bench)?;
+}
+
+fn of_wishes<'a, K: Kinds + Send + Sync>(
+    wishes: Vec<Wish<K>>,
+    make: fn(&Wish<K>) -> Result<Case, BlindError>,
+) -> Vec<Order<'a>> {
+    let order = |wish: Wish<K>| Order {
+        number: wish.number,
+        family: wish.family,
+        plan: wish.plan,
+        make: Box::new(move || make(&wish)),
+    };
+    wishes.into_iter().map(order).collect()
+}
+
+/// Makes the cases that are not there yet.
+fn make_missing(orders: &[Order<'_>], folder: &Path) {
+    let missing: Vec<&Order<'_>> =
+        orders.iter().filter(|order| !answer_file(folder, order.number).exists()).collect();
     let next = AtomicUsize::new(0);
     std::thread::scope(|scope| {
         for i in 0..THREADS {
             let work = || {
-                while let Some(recipe) = missing.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let made = case::make_or_smaller(&bench, &planner, recipe);
+                while let Some(order) = missing.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let made = (order.make)();
                     let written = match &made {
                         Ok(case) => case::write(case, &folder.join("cases"), &folder.join("answers")),
                         Err(_) => Ok(()),
                     };
                     if let Some(error) = made.err().or(written.err()) {
-                        eprintln!("case {:03} was not made: {error}", recipe.number);
+                        eprintln!("case {:03} was not made: {error}", order.number);
                     }
                 }
             };
             let _ = std::thread::Builder::new().name(format!("physics-{i}")).spawn_scoped(scope, work);
         }
     });
-    Ok(())
 }
 
 fn list(answer: &Answer, verdict: &Result<Verdict, String>) {

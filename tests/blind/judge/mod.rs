@@ -21,7 +21,7 @@ pub fn search(folder: &Path, options: &Options) -> Result<Verdict, AnyError> {
     let session = Session::read(folder)?;
     let rig = match &session.manifest.rig {
         RigReference::Named(name) => Rig::built_in(name)?,
-        RigReference::File(file) => Rig::read(&folder.join(file))?,
+        RigReference::File(file) => Rig::read_measured(&folder.join(file))?,
     };
     let measurements = Measurements::of_sessions(&[(folder.display().to_string(), session)], &rig)?;
     Ok(verdict(&find(&measurements, options, &Unattended)?))

@@ -34,6 +34,8 @@ const DRAWS: usize = 24;
 pub struct Case {
     /// What was measured.
     pub session: Session,
+    /// Files beside its tables: name and text (descriptions of robots that the program does not know).
+    pub files: Vec<(String, String)>,
     /// What is hidden.
     pub answer: Answer,
 }
@@ -95,16 +97,16 @@ pub fn make(bench: &Bench, planner: &Planner<'_>, recipe: &Recipe) -> Result<Cas
         case: recipe.number,
         seed: recipe.seed,
         family: recipe.family,
-        design: recipe.design,
-        generator: recipe.generator,
+        design: recipe.design.into(),
+        generator: recipe.generator.into(),
         also: maker.physics.usual_names(&bench.joints(), &bench.links()),
         dirt: dirt.iter().map(|secret| maker.hidden(secret, f64::NAN).named()).collect(),
         hidden,
-        sigma_m: [bare.x, bare.y, bare.z],
+        sigma: vec![bare.x, bare.y, bare.z],
         rows: rows.len(),
         cells: maker.cells.len(),
     };
-    Ok(Case { session, answer })
+    Ok(Case { session, files: vec![], answer })
 }
 
 /// Makes a case; where a kind cannot be as large as wanted on this robot, as large as it can.
@@ -134,7 +136,12 @@ pub fn make_or_smaller(bench: &Bench, planner: &Planner<'_>, recipe: &Recipe) ->
 /// When a file cannot be written.
 pub fn write(case: &Case, cases: &Path, answers: &Path) -> Result<(), BlindError> {
     let name = format!("{:03}", case.answer.case);
-    case.session.write(&cases.join(&name))?;
+    let folder = cases.join(&name);
+    case.session.write(&folder)?;
+    for (name, text) in &case.files {
+        let file = folder.join(name);
+        std::fs::write(&file, text).map_err(|source| BlindError::File { file, source })?;
+    }
     case.answer.write(&answers.join(format!("{name}.json")))
 }
 

@@ -16,6 +16,9 @@ pub enum BlindError {
     /// The rig's arm cannot be solved.
     #[error(transparent)]
     Solver(#[from] SolverError),
+    /// The eyes are of another sort.
+    #[error("the rig's lenses are no fisheyes with four powers: give one whose eyes are")]
+    Lens,
     /// MuJoCo refuses the world.
     #[error("MuJoCo does not accept the world that was written for a case: {reason}")]
     Physics {
@@ -51,6 +54,9 @@ pub enum BlindError {
     /// The session cannot be written.
     #[error(transparent)]
     Session(#[from] SessionError),
+    /// The keys of a manifest are no TOML.
+    #[error("the keys of a manifest that was made up are wrong: {0}")]
+    Keys(toml::de::Error),
     /// A file cannot be read or written.
     #[error(
         "{file} cannot be read or written ({source}): check that the folder exists and may be written to"

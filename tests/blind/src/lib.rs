@@ -8,14 +8,18 @@
 //! - [`design`]: plans of touches.
 //! - [`recipe`], [`mix`]: which cases shall be made.
 //! - [`case`]: cases drawn by chance, their sessions and their answers.
+//! - [`hide`]: what a case of other scenes hides: [`arms`], drawn by chance and measured from outside, and [`eyes`].
 //! - [`score`], [`table`]: who found what.
 
 pub mod answer;
+pub mod arms;
 pub mod bench;
 pub mod case;
 pub mod design;
 mod error;
+pub mod eyes;
 mod heat;
+pub mod hide;
 pub mod measure;
 pub mod mix;
 pub mod physics;

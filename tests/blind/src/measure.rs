@@ -1,9 +1,13 @@
-//! How large an effect is: in units of the spread of repeats, less what a moved screen would do.
+//! How large an effect is: in units of the spread of repeats, less what a moved screen, another frame or another
+//! place of a marker would do.
 
 use nalgebra::{DMatrix, DVector, Matrix6, Vector3, Vector6};
 
 use crate::bench::Bench;
 use crate::stage::Met;
+
+/// A direction of which others leave less than this is none of its own.
+const OWN_SHARE: f64 = 1e-6;
 
 /// What a touch says beyond the description: along u, against v, out of the glass, m.
 pub fn residual_m(bench: &Bench, met: &Met, height_m: f64) -> Vector3<f64> {
@@ -57,6 +61,35 @@ pub fn size_sigmas(places_m: &[Vector3<f64>], moved_m: &[Vector3<f64>], sigma_m:
     (left.norm_squared() / (3 * n).max(1) as f64).sqrt()
 }
 
+/// Root mean square of residuals per coordinate, where nothing is hidden.
+pub fn spread(residuals: &[Vec<f64>]) -> Vec<f64> {
+    let each = residuals.first().map_or(0, Vec::len);
+    let square = |c: usize| residuals.iter().map(|residual| residual[c].powi(2)).sum::<f64>();
+    (0..each).map(|c| (square(c) / residuals.len().max(1) as f64).sqrt()).collect()
+}
+
+/// What is left of changes once the part is taken off that columns of what nobody knows explain. All of it is divided
+/// by sigma already.
+pub fn beside(moved: &DVector<f64>, unknown: &DMatrix<f64>) -> DVector<f64> {
+    let mut apart: Vec<DVector<f64>> = vec![];
+    for column in unknown.column_iter() {
+        let left = without(&apart, column.clone_owned());
+        // What columns before explain, up to rounding, is no direction of its own.
+        if left.norm() > OWN_SHARE * column.norm() {
+            apart.push(left.normalize());
+        }
+    }
+    without(&apart, moved.clone())
+}
+
+/// What is left beside directions that are square to each other; twice, since once leaves roundings (Gram and Schmidt).
+fn without(apart: &[DVector<f64>], mut left: DVector<f64>) -> DVector<f64> {
+    for direction in apart.iter().chain(apart) {
+        left.axpy(-direction.dot(&left), direction, 1.0);
+    }
+    left
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -71,6 +104,17 @@ mod tests {
         assert!(size_sigmas(&places, &rigid, &sigma) < 1e-6);
         let bowed: Vec<_> = places.iter().map(|p| Vector3::new(0.0, 0.0, 0.3 * p.x * p.x)).collect();
         assert!(size_sigmas(&places, &bowed, &sigma) > 1.0);
+    }
+
+    #[test]
+    fn what_the_unknown_explains_has_no_size() {
+        let columns = DMatrix::from_fn(30, 3, |i, k| (0.3 * i as f64).powi(k as i32) * [1.0, 1e-3, 1e4][k]);
+        let inside = &columns * DVector::from_vec(vec![2.0, -700.0, 3e-5]);
+        let outside = DVector::from_fn(30, |i, _| if i % 2 == 0 { 1.0 } else { -1.0 });
+        let size = |moved: &DVector<f64>| beside(moved, &columns).norm() / 30f64.sqrt();
+        assert!(size(&inside) < 1e-6);
+        assert!((0.9..1.0).contains(&size(&(inside + &outside))));
+        assert_eq!(beside(&outside, &DMatrix::zeros(30, 0)), outside);
     }
 
     #[test]

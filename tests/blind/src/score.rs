@@ -331,8 +331,7 @@ pub fn median(values: &[f64]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::design::Design;
-    use crate::physics::Generator;
+    use crate::answer::{Plan, Source};
     use serde_json::json;
 
     fn answer(family: Family, hidden: &[(&str, &str, f64)], dirt: &[&str]) -> Answer {
@@ -346,12 +345,12 @@ mod tests {
             case: 0,
             seed: 0,
             family,
-            generator: Generator::Lean,
-            design: Design::Rich,
+            generator: Source::Lean,
+            design: Plan::Rich,
             hidden: hidden.collect(),
             also: vec![],
             dirt: dirt.iter().map(|name| (*name).to_owned()).collect(),
-            sigma_m: [1e-3; 3],
+            sigma: vec![1e-3; 3],
             rows: 300,
             cells: 100,
         }

@@ -63,9 +63,10 @@ fn singles(text: &mut String, score: &Score) {
         SIZES.map(|s| format!("{s} σ")).join(" | ")
     );
     let _ = writeln!(text, "|---|{}", "---|".repeat(SIZES.len()));
-    for plan in ["plain", "rich"] {
+    let plans: std::collections::BTreeSet<&String> = score.singles.keys().map(|(plan, _)| plan).collect();
+    for plan in plans {
         let cells = SIZES.map(|size| {
-            let naming = score.singles.get(&(plan.to_owned(), nearest_size(size)));
+            let naming = score.singles.get(&(plan.clone(), nearest_size(size)));
             naming.map_or_else(|| "–".to_owned(), both)
         });
         let _ = writeln!(text, "| {plan} | {} |", cells.join(" | "));

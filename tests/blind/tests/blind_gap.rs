@@ -3,17 +3,16 @@
 
 #[path = "../judge/mod.rs"]
 mod judge;
+#[path = "../judge/several.rs"]
+mod several;
 
-use plumbline_blind::answer::Answer;
 use plumbline_blind::bench::Bench;
 use plumbline_blind::case;
 use plumbline_blind::design::{Design, Planner};
 use plumbline_blind::physics::Generator;
 use plumbline_blind::recipe::{Family, Recipe};
-use plumbline_blind::score::{Score, Share};
 use plumbline_blind::secret::Kind;
-use plumbline_blind::table;
-use plumbline_gap::Options;
+use several::{all, scored, value};
 
 /// Cases: 4 without anything, 10 with one effect, 4 with two, 4 with what the library lacks.
 fn recipes() -> Vec<Recipe> {
@@ -53,47 +52,16 @@ fn recipes() -> Vec<Recipe> {
 }
 
 #[test]
-#[allow(clippy::print_stdout)]
 fn hidden_effects_are_found_and_nothing_else() {
     let bench = Bench::usual().expect("the rig");
     let planner = Planner::new(&bench).expect("it reaches the screen");
-    let folder = tempfile::tempdir().expect("a folder");
-    let options = Options { show: false, advise: false, ..Options::default() };
     let recipes = recipes();
-    let score = std::sync::Mutex::new(Score::default());
-    let judge_some = |first: usize| {
-        for recipe in recipes.iter().skip(first).step_by(2) {
-            let case = case::make_or_smaller(&bench, &planner, recipe).expect("physics");
-            case::write(&case, &folder.path().join("cases"), &folder.path().join("answers"))
-                .expect("written");
-            let name = format!("{:03}", recipe.number);
-            let verdict =
-                judge::search(&folder.path().join("cases").join(&name), &options).expect("a verdict");
-            let answer =
-                Answer::read(&folder.path().join("answers").join(format!("{name}.json"))).expect("there");
-            let hidden: Vec<String> = answer.hidden.iter().map(|hidden| hidden.named()).collect();
-            let said: Vec<String> = verdict.effects.iter().map(|f| format!("{}@{}", f.id, f.site)).collect();
-            println!("{name} {hidden:?}: {} {said:?}", verdict.verdict);
-            score.lock().expect("nobody panicked").count(&answer, &verdict);
-        }
-    };
-    std::thread::scope(|scope| {
-        scope.spawn(|| judge_some(0));
-        judge_some(1);
-    });
-    let score = score.into_inner().expect("nobody panicked");
-    println!("{}", table::markdown(&score));
-    let value = |share: &Share| share.value().expect("there were some");
-    let null: usize = score.null_named.iter().map(|share| share.hits).sum();
-    assert_eq!(null, 0, "a name where nothing is hidden");
+    let score = scored(recipes.len(), |number| case::make_or_smaller(&bench, &planner, &recipes[number]));
+    assert_eq!(all(score.null_named).hits, 0, "a name where nothing is hidden");
     // Few cases: one of a kind may go wrong that the table does not show.
-    let all = |shares: Vec<Share>| Share {
-        hits: shares.iter().map(|share| share.hits).sum(),
-        of: shares.iter().map(|share| share.of).sum(),
-    };
-    let singles = all(score.singles_visible.values().map(|naming| naming.class).collect());
+    let singles = all(score.singles_visible.values().map(|naming| naming.class));
     assert!(value(&singles) >= 0.9, "single effects: {singles:?}");
-    let several = all(score.several.values().map(|naming| naming.class).collect());
+    let several = all(score.several.values().map(|naming| naming.class));
     assert!(value(&several) >= 0.75, "pairs: {several:?}");
     let nameless = score.nameless["rich"];
     assert!(value(&nameless) >= 0.75, "not in the library: {nameless:?}");

@@ -30,13 +30,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                     .iter()
                     .map(|h| format!("{} ({:.2} sigma)", h.named(), h.size_sigmas))
                     .collect();
-                let [u, v, n] = case.answer.sigma_m.map(|s| s * 1e3);
+                let sigma: Vec<String> =
+                    case.answer.sigma.iter().map(|s| format!("{:.2}", s * 1e3)).collect();
                 println!(
-                    "{number:03} {:?} {:?} rows {} cells {} sigma {u:.2} {v:.2} {n:.2} mm {:.1} s: {}",
+                    "{number:03} {:?} {:?} rows {} cells {} sigma {} mm {:.1} s: {}",
                     recipe.family,
                     recipe.design,
                     case.answer.rows,
                     case.answer.cells,
+                    sigma.join(" "),
                     started.elapsed().as_secs_f64(),
                     hidden.join(", ")
                 );

@@ -1,0 +1,62 @@
+//! A small blind test of arms drawn by chance and measured from outside. The whole table is printed by the example
+//! `blind_table`.
+
+#[path = "../judge/mod.rs"]
+mod judge;
+#[path = "../judge/several.rs"]
+mod several;
+
+use plumbline_blind::answer::Plan;
+use plumbline_blind::arms::{self, Kind};
+use plumbline_blind::hide::Wish;
+use plumbline_blind::recipe::Family;
+use several::{all, scored, value};
+
+/// Cases: 4 without anything, 6 with one effect, 4 with two, 2 with what the library lacks.
+fn wishes() -> Vec<Wish<Kind>> {
+    let singles = [
+        (Kind::JointZero, Plan::Plain),
+        (Kind::LinkLength, Plan::Plain),
+        (Kind::JointSag, Plan::Rich),
+        (Kind::AxisSkew, Plan::Rich),
+        (Kind::JointEccentricity, Plan::Plain),
+        (Kind::Backlash, Plan::Rich),
+    ];
+    let nameless = [Kind::CableStep, Kind::FarCable];
+    let one = |family, plan, size_sigmas, kind| Wish {
+        number: 0,
+        family,
+        plan,
+        dirt: false,
+        repeated: true,
+        size_sigmas,
+        kind,
+        seed: 0,
+    };
+    let mut wishes = vec![];
+    wishes.extend([Plan::Plain, Plan::Rich].repeat(2).into_iter().map(|p| one(Family::Null, p, 0.0, None)));
+    wishes.extend(singles.map(|(kind, plan)| one(Family::Single, plan, 2.0, Some(kind))));
+    wishes.extend([None; 4].map(|kind| one(Family::Pair, Plan::Rich, 2.0, kind)));
+    wishes.extend(nameless.map(|kind| one(Family::OffLibrary, Plan::Rich, 5.0, Some(kind))));
+    for (number, wish) in wishes.iter_mut().enumerate() {
+        (wish.number, wish.seed, wish.repeated) = (number, 1900 + number as u64, number % 4 != 1);
+    }
+    wishes
+}
+
+#[test]
+fn hidden_effects_of_unknown_arms_are_found_and_nothing_else() {
+    let wishes = wishes();
+    let score = scored(wishes.len(), |number| arms::make(&wishes[number]));
+    assert_eq!(all(score.null_named).hits, 0, "a name where nothing is hidden");
+    // Few cases: one of a kind may go wrong that the table does not show.
+    let singles = all(score.singles_visible.values().map(|naming| naming.class));
+    assert!(singles.of == 6 && singles.hits >= 5, "single effects: {singles:?}");
+    let pairs = all(score.several.values().map(|naming| naming.class));
+    assert!(value(&pairs) >= 0.5, "pairs: {pairs:?}");
+    let nameless = all(score.nameless.values().copied());
+    assert!(value(&nameless) >= 0.5, "not in the library: {nameless:?}");
+    assert_eq!(score.nameless_named.hits, 0, "a confident name of what is in no library");
+    assert!(value(&score.wrong_confident) <= 0.15, "confident and wrong: {:?}", score.wrong_confident);
+    assert!(value(&score.coverage) >= 0.8, "intervals: {:?}", score.coverage);
+}
