@@ -5,6 +5,9 @@ use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
 use crate::arm::{Arm, Frames};
 use crate::observation::Observation;
 
+/// Along the glass per way down, at most: nobody comes in flatter, and joints do not turn quite alike.
+const FLATTEST: f64 = 3.0;
+
 /// All that effects depend on, in one pose of the arm on the screen.
 #[derive(Clone, Debug)]
 pub struct Situation<'a> {
@@ -23,6 +26,8 @@ pub struct Situation<'a> {
     pub(super) roll: Vector3<f64>,
     /// Direction of the last motion along the glass, robot frame; zero if unknown.
     pub(super) sweep: Vector3<f64>,
+    /// The same, as long as the way along the glass per way down.
+    pub(super) slope: Vector3<f64>,
     /// Where the nominal joints are.
     pub(super) frames: Frames,
     /// Moment of gravity about each joint's origin, robot frame.
@@ -63,6 +68,7 @@ impl<'a> Situation<'a> {
             })
             .collect();
         let tip = Point3::from(frames.robot_from_tip.translation.vector);
+        let (sweep, slope) = sweep(&frames.robot_from_joint, &frames.axes, direction, tip, normal);
         let lean_nm = moments.first().map_or(Vector3::zeros(), |m| Vector3::new(m.x, m.y, 0.0));
         Self {
             arm,
@@ -73,7 +79,8 @@ impl<'a> Situation<'a> {
             sideways_nm,
             lean_nm,
             roll: roll(arm, &frames.robot_from_joint, normal),
-            sweep: sweep(&frames.robot_from_joint, &frames.axes, direction, tip, normal),
+            sweep,
+            slope,
             weights_n: arm.weights_beyond_n(payload_kg),
             moments_nm: moments,
             normal: *normal,
@@ -106,19 +113,23 @@ fn roll(arm: &Arm, joints: &[Isometry3<f64>], normal: &Vector3<f64>) -> Vector3<
     -(last.rotation * arm.finger.into_inner() + normal)
 }
 
+/// Where the finger goes along the glass when every joint turns alike: the direction, and with the way along the
+/// glass per way down as its length.
 fn sweep(
     joints: &[Isometry3<f64>],
     axes: &[Vector3<f64>],
     direction: &[f64],
     tip: Point3<f64>,
     normal: &Vector3<f64>,
-) -> Vector3<f64> {
+) -> (Vector3<f64>, Vector3<f64>) {
     let velocity: Vector3<f64> = joints
         .iter()
         .zip(axes)
         .zip(direction)
         .map(|((joint, axis), sign)| axis.cross(&(tip.coords - joint.translation.vector)) * *sign)
         .sum();
-    let along = velocity - normal * normal.dot(&velocity);
-    along.try_normalize(1e-6).unwrap_or_default()
+    let down = normal.dot(&velocity);
+    let along = velocity - normal * down;
+    let Some(unit) = along.try_normalize(1e-6) else { return (Vector3::zeros(), Vector3::zeros()) };
+    (unit, unit * (along.norm() / down.abs().max(1e-9)).min(FLATTEST))
 }

@@ -37,6 +37,7 @@ pub(super) struct Explored {
 }
 
 /// What may be looked through.
+#[derive(Clone, Copy)]
 pub(super) struct Space<'a> {
     pub fields: &'a [Field],
     pub blocks: &'a [Block],

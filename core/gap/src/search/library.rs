@@ -58,6 +58,9 @@ const ONE_LOGGED_EARLY: f64 = 0.002;
 /// Beside all of them it is usual: a joint that carries more settles later, so more of its way was left.
 const ONE_LATER_THAN_ALL: f64 = 0.3;
 
+/// Shapes (moments in s, torques in N m, orders) closer than this are the same.
+const SAME_SHAPE: f64 = 1e-6;
+
 /// How much more probable beforehand a set is for what goes together in it, log.
 pub(super) fn together(set: &[usize], blocks: &[Block]) -> f64 {
     if !set.iter().any(|&block| blocks[block].is_of_all) {
@@ -90,6 +93,22 @@ impl Library {
                 || (effect.kind == Kind::ToothRipple && !noise_is_known)
         };
         Self::with(Effect::candidates(measurements).into_iter().filter(|effect| !ruled_out(effect)).collect())
+    }
+
+    /// The same with more shapes of these effects, between their neighbors; what is there keeps its place. `None`
+    /// where all of them are there already.
+    pub fn finer(&self, measurements: &Measurements, found: &[Effect]) -> Option<Self> {
+        let shapes = found.iter().filter(|effect| effect.shape.is_some());
+        let refined = shapes.flat_map(|effect| effect.refined(measurements));
+        let is_known = |effect: &Effect| {
+            let same = |known: &Effect| {
+                let apart = known.shape.zip(effect.shape).map_or(0.0, |(one, other)| (one - other).abs());
+                known.kind == effect.kind && known.site == effect.site && apart < SAME_SHAPE
+            };
+            self.effects.iter().any(same)
+        };
+        let more: Vec<Effect> = refined.filter(|effect| !is_known(effect)).collect();
+        (!more.is_empty()).then(|| Self::with(self.effects.iter().cloned().chain(more).collect()))
     }
 
     /// Of these effects.

@@ -117,7 +117,7 @@ impl Linear {
             total += weight;
             scaled.row_mut(line).scale_mut(weight.sqrt());
         }
-        let gram = scaled.tr_mul(&scaled);
+        let gram = gram_of(&scaled);
         let repeated = counts.iter().any(|count| *count > 1.0);
         let means = if repeated {
             let mut means = DMatrix::zeros(self.cells, self.lines.ncols());
@@ -132,6 +132,12 @@ impl Linear {
         };
         Sums { gauge: self.gauge, nuisances: self.nuisances.clone(), gram, means, counts, total }
     }
+}
+
+/// MᵀM. By a transposed copy, since the product of whole matrices goes by blocks that fit the cache, and a product
+/// of columns, dot by dot, does not.
+pub(super) fn gram_of(matrix: &DMatrix<f64>) -> DMatrix<f64> {
+    matrix.transpose() * matrix
 }
 
 /// What evidence needs of the rows; its size does not depend on their number, cells apart.
@@ -162,7 +168,7 @@ impl Sums {
                 for (cell, count) in self.counts.iter().enumerate() {
                     scaled.row_mut(cell).scale_mut(shrink(*count).sqrt());
                 }
-                &self.gram - scaled.tr_mul(&scaled)
+                &self.gram - gram_of(&scaled)
             }
         };
         (gram, log_det)

@@ -1,5 +1,6 @@
 //! One look at the data: everything linear at the present model.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use nalgebra::DVector;
@@ -26,6 +27,8 @@ const SEEN_SIGMAS: f64 = 1.5;
 const STANDS_OUT: f64 = 2.0;
 /// A family is exchanged for so many of them at most.
 const MOST_SPLIT: usize = 3;
+/// Steps that explain less (log evidence) are not looked at more closely.
+const LEAST_STEP: f64 = 3.0;
 /// So many of the best sets are looked around again.
 const KEPT: usize = 2;
 /// No fingertip is a point: its pad is round by so much or less, m.
@@ -174,14 +177,53 @@ impl Look {
         let explored = space.explore(seeds, context)?;
         let split: Vec<Vec<usize>> =
             self.split(&explored).into_iter().filter(|set| set.len() <= most).collect();
-        if split.is_empty() {
+        let has_family = |set: &[usize]| set.iter().any(|&block| self.blocks[block].is_family);
+        if !explored.models.first().is_some_and(|model| has_family(&model.set)) {
             return Ok(explored);
         }
-        // One member of a family is far worse than the family where two are off, so no way of single steps
-        // leads from one to the other.
-        let found = explored.models.iter().take(KEPT).map(|model| model.set.clone());
-        let seeds: Vec<Vec<usize>> = seeds.iter().cloned().chain(found).chain(split).collect();
+        // One member of a family is far worse than the family where two are off, or where something else is off
+        // beside it, so no way of single steps leads from one to the other: sets without families are looked
+        // through by themselves.
+        let single: Vec<usize> =
+            allowed.iter().copied().filter(|&block| !self.blocks[block].is_family).collect();
+        let alone = Space { allowed: &single, ..space }.explore(&[vec![]], context)?;
+        let best = |explored: &Explored| -> Vec<Vec<usize>> {
+            explored.models.iter().take(KEPT).map(|model| model.set.clone()).collect()
+        };
+        let seeds: Vec<Vec<usize>> =
+            seeds.iter().cloned().chain(best(&explored)).chain(best(&alone)).chain(split).collect();
         space.explore(&seeds, context)
+    }
+
+    /// Steps at the moment that suits each of them best, beside the best set or in the place of one of its effects.
+    /// The moments that were tried lie so far apart that some rows are on the wrong side of a step, which makes a large
+    /// one look worse than something that only resembles it.
+    pub fn steps(&self, explored: &Explored) -> Vec<usize> {
+        let Some(field) = self.fields.get(self.likely(explored)) else { return vec![] };
+        let best: Vec<usize> = explored.models.first().map_or(vec![], |model| {
+            model.set.iter().copied().filter(|&block| block < self.effects).collect()
+        });
+        let without = (0..best.len()).map(|leave| {
+            best.iter().enumerate().filter(|(k, _)| *k != leave).map(|(_, &block)| block).collect()
+        });
+        let bases: Vec<Vec<usize>> = without.chain([best.clone()]).collect();
+        let is_step =
+            |block: usize| matches!(self.blocks[block].kind, Some(Kind::SlippedHorn | Kind::ScreenBumped));
+        let mut steps: BTreeMap<usize, (f64, usize)> = BTreeMap::new();
+        for base in &bases {
+            let given = field.given(base, &self.packed);
+            for &block in self.allowed.iter().filter(|&&block| is_step(block)) {
+                if base.iter().any(|&other| self.blocks[block].excludes(&self.blocks[other])) {
+                    continue;
+                }
+                let gain = given.adds(&self.packed[block]);
+                let own = steps.entry(self.blocks[block].name).or_insert((gain, block));
+                if gain > own.0 {
+                    *own = (gain, block);
+                }
+            }
+        }
+        steps.into_values().filter(|(gain, _)| *gain > LEAST_STEP).map(|(_, block)| block).collect()
     }
 
     /// The best set with its families exchanged for the members that stand out most.

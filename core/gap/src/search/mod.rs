@@ -122,7 +122,7 @@ pub(crate) fn search(
         return Err(GapError::TooFew { rows, needed: FEWEST_ROWS });
     }
     context.report(0.0, "placing frames");
-    let library = Library::of(measurements, floor, options);
+    let mut library = Library::of(measurements, floor, options);
     let covariates = Covariates::of(measurements);
     let all: Vec<usize> = (0..rows).collect();
     let start = placed(measurements, &all, context)?;
@@ -140,8 +140,18 @@ pub(crate) fn search(
         let top = top(&look, &explored);
         let effects: Vec<Effect> = top.iter().map(|&block| library.effects[block].clone()).collect();
         let same = effects.iter().eq(fitted.assumed.effects.iter().map(|present| &present.effect));
+        // What was found, and steps, are looked at again between their neighbors of the grid.
+        let finer = if round + 1 < rounds {
+            let steps = look.steps(&explored).into_iter().map(|block| library.effects[block].clone());
+            library.finer(measurements, &effects.iter().cloned().chain(steps).collect::<Vec<_>>())
+        } else {
+            None
+        };
+        let more = finer.as_ref().map_or(0, |finer| finer.blocks.len() - library.blocks.len());
+        let moved = |block: usize| if block < look.effects { block } else { block + more };
         seeds.truncate(1);
-        seeds.extend(explored.models.iter().take(2).map(|model| model.set.clone()));
+        let best = explored.models.iter().take(2);
+        seeds.extend(best.map(|model| model.set.iter().map(|&block| moved(block)).collect()));
         last = Some((look, explored));
         let mut quieter = false;
         if !same {
@@ -157,9 +167,10 @@ pub(crate) fn search(
                 floor = next;
             }
         }
-        if same && !quieter {
+        if same && !quieter && finer.is_none() {
             break;
         }
+        library = finer.unwrap_or(library);
     }
     let Some((look, explored)) = last else {
         return Err(GapError::TooFew { rows, needed: FEWEST_ROWS });

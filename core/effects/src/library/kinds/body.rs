@@ -73,10 +73,14 @@ pub(super) static TOUCH_DRAG: Entry = Entry {
     remedy: "Come straight from above, and slower.",
     parameters: &[parameter("drag_m", 0.0025)],
     site: Site::Contact,
-    shape: Shape::None,
+    // At one speed along the glass, or at one speed down: then the way along it goes with how flat the finger comes in.
+    shape: Shape::Either(["as far everywhere", "farther where the finger comes in flatter"]),
     shown: |rows| rows.touches && rows.direction,
-    act: Act::Arm(|_, situation, values, deviation| deviation.contact_m += situation.sweep * values[0]),
-    reported: Effect::plain,
+    act: Act::Arm(|effect, situation, values, deviation| {
+        let way = if effect.shape.is_some() { situation.slope } else { situation.sweep };
+        deviation.contact_m += way * values[0];
+    }),
+    reported: Effect::either,
     is: &[Is::Planned, Is::OneSided],
 };
 

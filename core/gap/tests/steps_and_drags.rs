@@ -1,0 +1,61 @@
+//! A step is found where it is, not where the nearest moment was tried; a drag, whichever way it grows.
+
+#![allow(clippy::print_stdout, reason = "figures are read from the test's output")]
+
+mod common;
+
+use common::{Plan, present, touches};
+use plumbline_effects::Present;
+use plumbline_gap::finding::{Finding, NamedEffect};
+use plumbline_gap::{Options, Verdict, find};
+use plumbline_model::Unattended;
+
+fn shaped(plan: &Plan, id: &str, site: &str, value: f64, shape: Option<f64>) -> Present {
+    let mut one = present(&touches(plan, &[], 1), id, site, &[value]);
+    one.effect = one.effect.with_shape(shape);
+    one
+}
+
+fn found(plan: &Plan, hidden: &[Present], seed: u64) -> Finding {
+    let options = Options { show: false, advise: false, ..Options::default() };
+    let finding = find(&touches(plan, hidden, seed), &options, &Unattended).expect("can be looked at");
+    println!("{:?} {}", finding.verdict, finding.sentence);
+    finding
+}
+
+fn named<'a>(finding: &'a Finding, id: &str, site: &str) -> Option<&'a NamedEffect> {
+    finding.effects.iter().find(|effect| effect.id == id && effect.site == site)
+}
+
+#[test]
+fn the_moment_of_a_large_step_is_known_to_a_few_rows() {
+    // 160 rows, 8 s apart: moments that are tried first lie 80 s apart.
+    let plan = Plan { places: 40, repeats: 4, noise_m: 0.8e-3, ..Plan::default() };
+    let mut narrow = 0;
+    for (seed, at_s) in [(1, 444.0), (2, 676.0), (3, 860.0)] {
+        let finding = found(&plan, &[shaped(&plan, "slipped-horn", "r_elbow_y", 0.05, Some(at_s))], seed);
+        let slipped = named(&finding, "slipped-horn", "r_elbow_y").expect("named");
+        let moment = slipped.parameters.iter().find(|one| one.name == "t_secs").expect("reported");
+        println!("{at_s}: {} ({} to {})", moment.value, moment.low, moment.high);
+        assert!(moment.low <= at_s && at_s <= moment.high, "{at_s}: {moment:?}");
+        // Half of what lies between two moments that are tried first.
+        assert!((moment.value - at_s).abs() < 40.0, "{at_s}: {moment:?}");
+        narrow += usize::from(moment.high - moment.low <= 64.0);
+        assert_eq!(finding.effects.len(), 1, "no companion stands for rows on the wrong side of the step");
+    }
+    // A moment of the first ones that suits best keeps their range.
+    assert!(narrow >= 2, "{narrow} of 3");
+}
+
+#[test]
+fn a_drag_is_named_whichever_way_it_grows() {
+    // Every finger comes in about as flat here, so which of the two it is stays open, and the interval reaches over both.
+    let plan = Plan { places: 60, sides: vec!["plus", "minus"], noise_m: 0.6e-3, ..Plan::default() };
+    for shape in [None, Some(1.0)] {
+        let finding = found(&plan, &[shaped(&plan, "touch-drag", "tip", 0.004, shape)], 7);
+        assert!(matches!(finding.verdict, Verdict::Named | Verdict::Class), "{}", finding.sentence);
+        let drag = named(&finding, "touch-drag", "tip").expect("named");
+        let way = drag.parameters.iter().find(|one| one.name == "drag_m").expect("reported");
+        assert!(way.low <= 0.004 && 0.004 <= way.high, "{way:?}");
+    }
+}
