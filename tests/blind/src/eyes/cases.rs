@@ -329,7 +329,9 @@ mod tests {
             let read = plumbline_model::Session::read(folder.path()).expect("well formed");
             let rows = read.localizations.as_ref().map_or(0, LocalizationTable::row_count);
             assert_eq!(rows, case.answer.rows);
-            assert!((case.answer.hidden[0].size_sigmas - 2.0).abs() < 0.2);
+            // As large as wanted, or the next smaller size where an eye cannot turn so far.
+            let size = case.answer.hidden[0].size_sigmas;
+            assert!([0.5, 1.0, 2.0].iter().any(|wanted| (size / wanted - 1.0).abs() < 0.1), "{size}");
             assert!(case.answer.dirt.len() <= 7);
         }
     }
