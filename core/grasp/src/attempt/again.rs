@@ -53,7 +53,10 @@ impl Running<'_> {
         self.record.seen_after.clear();
         self.record.seen_after_at_s = None;
         match self.try_once() {
-            Err(End::Failed(Failure::Halted, halted)) => Err(End::Failed(Failure::Halted, halted)),
+            // Of whether it can be grasped these say nothing.
+            Err(End::Failed(ended @ (Failure::Halted | Failure::EyesLost), why)) => {
+                Err(End::Failed(ended, why))
+            }
             Err(End::Failed(_, second) | End::Refused(second)) => {
                 Err(End::Failed(failure, format!("{why}; it was tried again: {second}")))
             }
