@@ -83,6 +83,8 @@ pub enum Failure {
     Slipped,
     /// Something ended it on the way.
     Halted,
+    /// The eyes gave no pairs any more: of the object, and of what the arm did with it, this says nothing.
+    EyesLost,
 }
 
 /// What became of it.

@@ -43,7 +43,15 @@ const TEMPORARY: u8 = 0x01;
 /// Whether the end-of-image marker is reached. Bytes after it (cameras pad their files) do not
 /// matter, and an embedded preview with its own end marker is not mistaken for the end.
 pub(crate) fn is_complete(bytes: &[u8]) -> bool {
-    first_marker(bytes, |marker| marker == END_OF_IMAGE).is_some()
+    whole(bytes).is_some()
+}
+
+/// The image up to and with its end-of-image marker, without what stands behind it; `None`: it is cut or
+/// damaged before. Video4Linux may hand out a frame with all of its buffer, which is as long as the longest frame
+/// could be, and in which the rest of earlier frames stands behind the end of this one.
+pub(crate) fn whole(bytes: &[u8]) -> Option<&[u8]> {
+    let (_, after) = first_marker(bytes, |marker| marker == END_OF_IMAGE)?;
+    bytes.get(..after)
 }
 
 /// Whether its Huffman tables stand in it, before its first scan. Many cameras leave them out of
@@ -51,18 +59,18 @@ pub(crate) fn is_complete(bytes: &[u8]) -> bool {
 /// refuse such a file.
 pub(crate) fn has_huffman_tables(bytes: &[u8]) -> bool {
     let first = first_marker(bytes, |marker| matches!(marker, HUFFMAN_TABLES | START_OF_SCAN | END_OF_IMAGE));
-    first == Some(HUFFMAN_TABLES)
+    first.is_some_and(|(marker, _)| marker == HUFFMAN_TABLES)
 }
 
-/// Walks the markers (ITU-T T.81, annex B) to the first one that is wanted; `None`: the file is
-/// cut or damaged before.
-fn first_marker(bytes: &[u8], is_wanted: impl Fn(u8) -> bool) -> Option<u8> {
+/// Walks the markers (ITU-T T.81, annex B) to the first one that is wanted, and says where the bytes behind it
+/// begin; `None`: the file is cut or damaged before.
+fn first_marker(bytes: &[u8], is_wanted: impl Fn(u8) -> bool) -> Option<(u8, usize)> {
     let mut at = 0;
     let mut in_scan = false;
     loop {
         let (marker, after) = next_marker(bytes, at, in_scan)?;
         if is_wanted(marker) {
-            return Some(marker);
+            return Some((marker, after));
         }
         at = after;
         match marker {
@@ -171,10 +179,16 @@ mod tests {
     }
 
     #[test]
-    fn padding_behind_the_end_does_no_harm() {
-        let mut bytes = jpeg();
-        bytes.extend([0; 100]);
-        assert!(is_complete(&bytes));
+    fn what_stands_behind_the_end_does_no_harm_and_is_no_part_of_it() {
+        let bytes = jpeg();
+        // Zeros, and the rest of a longer frame that was in the buffer before.
+        for rest in [&[0; 100][..], &bytes[bytes.len() / 2..]] {
+            let padded = [&bytes, rest].concat();
+            assert!(is_complete(&padded));
+            assert_eq!(whole(&padded), Some(&bytes[..]));
+        }
+        assert_eq!(whole(&bytes), Some(&bytes[..]));
+        assert_eq!(whole(&bytes[..bytes.len() - 1]), None);
     }
 
     #[test]

@@ -21,6 +21,12 @@ pub(crate) fn image_key(eye: Eye) -> &'static str {
     }
 }
 
+/// Angles of joints as they were read, rad.
+pub(crate) const STATE: &str = "observation.state";
+/// Angles that joints were told, rad.
+pub(crate) const ACTION: &str = "action";
+/// When a pair was captured, s since the first one.
+pub(crate) const CAPTURED: &str = "observation.captured_s";
 /// Where the left eye was in the robot: 16 numbers, row by row, of the matrix that takes points (m) of that eye there.
 pub(crate) const PLACES: &str = "observation.robot_from_left_eye";
 
@@ -28,11 +34,13 @@ pub(crate) const PLACES: &str = "observation.robot_from_left_eye";
 pub(crate) struct About<'a> {
     pub robot: &'a str,
     pub joints: &'a [String],
+    /// Those of them that were told something in every frame.
+    pub actions: &'a [String],
     /// Height, width.
     pub image: [u32; 2],
     pub frames: usize,
     pub rate_hz: f64,
-    /// Whether each pair says where the left eye was.
+    /// Whether it says where the left eye was.
     pub has_places: bool,
 }
 
@@ -47,9 +55,12 @@ pub(crate) fn features(about: &About<'_>) -> Map<String, Value> {
     for eye in [Eye::Left, Eye::Right] {
         features.insert(image_key(eye).to_owned(), image.clone());
     }
-    let state = json!({ "dtype": "float32", "shape": [about.joints.len()], "names": about.joints });
-    features.insert("observation.state".to_owned(), state);
-    features.insert("observation.captured_s".to_owned(), one("float64"));
+    let angles = |joints: &[String]| json!({ "dtype": "float32", "shape": [joints.len()], "names": joints });
+    features.insert(STATE.to_owned(), angles(about.joints));
+    if !about.actions.is_empty() {
+        features.insert(ACTION.to_owned(), angles(about.actions));
+    }
+    features.insert(CAPTURED.to_owned(), one("float64"));
     features.insert("timestamp".to_owned(), one("float32"));
     for name in ["frame_index", "episode_index", "index", "task_index"] {
         features.insert(name.to_owned(), one("int64"));
@@ -104,7 +115,7 @@ pub(crate) fn cameras(cameras: &StereoCameras) -> Value {
         "about": "pixel (0, 0) is the middle of the top left one; axes of a camera: x right, y down, z along the line \
             of sight; right_from_left takes points (m) of the left camera to the right one; where the left camera was \
             in the robot (torso: x forward, y left, z up) is observation.robot_from_left_eye of each frame, where the \
-            recording says it",
+            recording says it; 16 times NaN where it does not",
         image_key(Eye::Left): eye(&cameras.left),
         image_key(Eye::Right): eye(&cameras.right),
         "right_from_left": rows,

@@ -1,5 +1,6 @@
 //! `plumbline lerobot`: a recording as a LeRobot data set.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use plumbline_lerobot::{Options, export};
@@ -34,10 +35,16 @@ pub struct LerobotReport {
     pub rate_hz: f64,
     /// Joints whose angles are in it.
     pub joints: Vec<String>,
+    /// Those of them whose commanded angles are in it as `action`.
+    pub actions: Vec<String>,
+    /// The others, and in how many pairs each was told nothing.
+    pub not_commanded: BTreeMap<String, usize>,
     /// Whether lenses and how the eyes sit to each other are in it: the recording has a calibration.
     pub has_cameras: bool,
-    /// Whether it says for each pair where the left eye was in the robot: the recording says how the head stood.
+    /// Whether it says where the left eye was in the robot: the recording says how the head stood.
     pub has_places: bool,
+    /// Pairs of which that is not known.
+    pub without_place: usize,
 }
 
 /// Writes the data set.
@@ -53,7 +60,10 @@ pub fn lerobot(args: &LerobotArgs, context: &dyn JobContext) -> Result<LerobotRe
         left_out: exported.left_out,
         rate_hz: exported.rate_hz,
         joints: exported.joints,
-        has_cameras: cameras.is_some(),
+        actions: exported.actions,
+        not_commanded: exported.not_commanded.into_iter().map(|joint| (joint.joint, joint.frames)).collect(),
+        has_cameras: exported.has_cameras,
         has_places: exported.has_places,
+        without_place: exported.without_place,
     })
 }

@@ -1,8 +1,8 @@
 //! `log.mcap` of a session: what works live, written as it happens, and read again.
 //!
 //! The file is MCAP (<https://mcap.dev/spec>) with the protobuf schemas of Foxglove where there is one,
-//! so that Foxglove and Rerun open it: images as `foxglove.CompressedImage`, angles of joints as
-//! `foxglove.JointStates`, messages as `foxglove.Log`, calibrations as `foxglove.CameraCalibration`, where the eyes
+//! so that Foxglove and Rerun open it: images as `foxglove.CompressedImage`, angles of joints, and the angles that they
+//! were told, as `foxglove.JointStates`, messages as `foxglove.Log`, calibrations as `foxglove.CameraCalibration`, where the eyes
 //! are as `foxglove.FrameTransforms`, boxes of things as `foxglove.ImageAnnotations`. What only this program knows
 //! (commands, detections, places, for how long the eyes had been on) is JSON. Calibration files and the description
 //! of the robot are attachments, so that a recording is whole by itself.
@@ -24,7 +24,7 @@ mod writer;
 
 pub use error::RecordingError;
 pub use frames::EyePlaces;
-pub use messages::{JointReading, Level, Note};
+pub use messages::{JointGoal, JointReading, Level, Note};
 pub use outlines::Outline;
 pub use reader::{RecordedPair, Recording, Told};
 pub use topic::Topic;

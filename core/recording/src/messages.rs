@@ -22,6 +22,15 @@ pub struct JointReading {
     pub speed_rad_s: Option<f64>,
 }
 
+/// A joint that holds, or goes, where it was told to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointGoal {
+    /// Its name in the robot's description.
+    pub name: String,
+    /// The angle it was sent last, rad.
+    pub angle_rad: f64,
+}
+
 /// How a message is meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Level {
@@ -93,6 +102,21 @@ pub(crate) fn readings(states: JointStates) -> Vec<JointReading> {
     states.joints.into_iter().filter_map(reading).collect()
 }
 
+/// Goals are states that are wanted: the schema has no other place for them.
+pub(crate) fn goals(at: Timestamp, goals: &[JointGoal]) -> JointStates {
+    let reading = |goal: &JointGoal| JointReading {
+        name: goal.name.clone(),
+        angle_rad: goal.angle_rad,
+        speed_rad_s: None,
+    };
+    joints(at, &goals.iter().map(reading).collect::<Vec<_>>())
+}
+
+pub(crate) fn wanted(states: JointStates) -> Vec<JointGoal> {
+    let goal = |JointReading { name, angle_rad, .. }| JointGoal { name, angle_rad };
+    readings(states).into_iter().map(goal).collect()
+}
+
 pub(crate) fn log(at: Timestamp, note: &Note) -> Log {
     let level = match note.level {
         Level::Info => log::Level::Info,
@@ -151,7 +175,7 @@ pub(crate) fn kind(topic: Topic) -> (Schema, String) {
     match topic {
         Topic::LeftEye | Topic::RightEye => of::<CompressedImage>(),
         Topic::LeftCalibration | Topic::RightCalibration => of::<CameraCalibration>(),
-        Topic::Joints => of::<JointStates>(),
+        Topic::Joints | Topic::Goals => of::<JointStates>(),
         Topic::Notes => of::<Log>(),
         Topic::Commands => json("plumbline.Command"),
         Topic::Detections => json("plumbline.Detections"),

@@ -15,7 +15,7 @@ use serde_json::Value;
 use crate::error::RecordingError;
 use crate::frames;
 use crate::index::{Index, LONGEST, Place};
-use crate::messages::{self, JointReading, Note};
+use crate::messages::{self, JointGoal, JointReading, Note};
 use crate::parse::{each_in_chunk, parse};
 use crate::topic::Topic;
 use crate::whose::Whose;
@@ -177,6 +177,15 @@ impl Recording {
         let of =
             |recording: &mut Self, place| recording.message::<JointStates>(place).map(messages::readings);
         self.all(Topic::Joints, of)
+    }
+
+    /// What joints were told, each time that was written: all joints that held or went where they were told to.
+    ///
+    /// # Errors
+    /// When the file cannot be read any more.
+    pub fn goals(&mut self) -> Result<Vec<Told<Vec<JointGoal>>>, RecordingError> {
+        let of = |recording: &mut Self, place| recording.message::<JointStates>(place).map(messages::wanted);
+        self.all(Topic::Goals, of)
     }
 
     /// All messages for the operator.

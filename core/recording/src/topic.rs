@@ -13,6 +13,8 @@ pub enum Topic {
     RightCalibration,
     /// Angles of joints.
     Joints,
+    /// Angles that joints hold or go to, as they were commanded.
+    Goals,
     /// Messages for the operator.
     Notes,
     /// What was asked for.
@@ -31,12 +33,13 @@ pub enum Topic {
 
 impl Topic {
     /// All of them.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::LeftEye,
         Self::RightEye,
         Self::LeftCalibration,
         Self::RightCalibration,
         Self::Joints,
+        Self::Goals,
         Self::Notes,
         Self::Commands,
         Self::Detections,
@@ -54,6 +57,7 @@ impl Topic {
             Self::LeftCalibration => "/eyes/left/calibration",
             Self::RightCalibration => "/eyes/right/calibration",
             Self::Joints => "/joints",
+            Self::Goals => "/joints/goals",
             Self::Notes => "/notes",
             Self::Commands => "/commands",
             Self::Detections => "/detections",

@@ -15,7 +15,7 @@ use serde::Serialize;
 
 use crate::error::RecordingError;
 use crate::frames::{self, EyePlaces};
-use crate::messages::{self, JointReading, Note};
+use crate::messages::{self, JointGoal, JointReading, Note};
 use crate::outlines::{self, Outline};
 use crate::topic::Topic;
 
@@ -213,6 +213,15 @@ impl RecordingWriter {
     pub fn joints(&mut self, at: Timestamp, readings: &[JointReading]) -> Result<(), RecordingError> {
         self.close_chunk_in_time(at)?;
         self.put(Topic::Joints, at, 0, &messages::joints(at, readings))
+    }
+
+    /// Writes the angles that joints were sent last; joints that hold none (limp, or never told) are not among them.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn goals(&mut self, at: Timestamp, goals: &[JointGoal]) -> Result<(), RecordingError> {
+        self.close_chunk_in_time(at)?;
+        self.put(Topic::Goals, at, 0, &messages::goals(at, goals))
     }
 
     /// Writes a message for the operator.

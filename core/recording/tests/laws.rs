@@ -7,8 +7,8 @@ use jiff::{SignedDuration, Timestamp};
 use plumbline_model::EyesThen;
 use plumbline_model::robot::default_rig;
 use plumbline_recording::{
-    About, Attached, EyePlaces, JointReading, Jpeg, Level, Note, Recording, RecordingError, RecordingWriter,
-    Topic, Whose,
+    About, Attached, EyePlaces, JointGoal, JointReading, Jpeg, Level, Note, Recording, RecordingError,
+    RecordingWriter, Topic, Whose,
 };
 use serde_json::json;
 
@@ -262,6 +262,28 @@ fn how_the_eyes_were_is_read_with_each_pair_and_its_absence_is_no_zero() {
     let mut older = Recording::open(&written(tempfile::tempdir().expect("a folder").path(), 1)).expect("one");
     assert!(older.pair(0).expect("readable").eyes.is_unknown());
     assert!(older.robot_from_left().expect("readable").is_empty());
+}
+
+#[test]
+fn what_joints_were_told_is_read_beside_where_they_were_and_that_nothing_was_told_any_more_too() {
+    let folder = folder();
+    let file = folder.path().join("log.mcap");
+    let goal = |name: &str, angle_rad| JointGoal { name: name.to_owned(), angle_rad };
+    let told = [vec![goal("head_z", 0.3), goal("head_y", -0.2)], vec![goal("head_y", -0.1)], vec![]];
+    let mut writer = RecordingWriter::create(&file, start(), &about()).expect("begun");
+    for (second, goals) in told.iter().enumerate() {
+        writer.joints(after(second as f64), &joints(0.1)).expect("written");
+        writer.goals(after(second as f64), goals).expect("written");
+    }
+    writer.finish().expect("finished");
+    let mut recording = Recording::open(&file).expect("a recording");
+    let read = recording.goals().expect("readable");
+    assert_eq!(read.iter().map(|told| told.at).collect::<Vec<_>>(), [after(0.0), after(1.0), after(2.0)]);
+    assert_eq!(read.into_iter().map(|told| told.what).collect::<Vec<_>>(), told);
+    assert_eq!(recording.joints().expect("readable").len(), 3, "where they were is not mixed up with it");
+    // One of an older version says nothing of it.
+    let mut older = Recording::open(&written(tempfile::tempdir().expect("a folder").path(), 1)).expect("one");
+    assert!(older.goals().expect("readable").is_empty());
 }
 
 #[test]

@@ -7,7 +7,7 @@ use jiff::{SignedDuration, Timestamp};
 use plumbline_model::EyesThen;
 use plumbline_model::robot::default_rig;
 use plumbline_recording::{
-    About, Attached, EyePlaces, JointReading, Jpeg, Level, Note, Outline, RecordingWriter, Topic,
+    About, Attached, EyePlaces, JointGoal, JointReading, Jpeg, Level, Note, Outline, RecordingWriter, Topic,
 };
 use serde_json::{Value, json};
 
@@ -94,6 +94,8 @@ fn the_python_package_reads_what_was_written() {
         let angle = JointReading { name: "head_z".to_owned(), angle_rad: 0.5, speed_rad_s: None };
         writer.joints(at, &[angle]).expect("written");
     }
+    let goal = JointGoal { name: "head_z".to_owned(), angle_rad: 0.75 };
+    writer.goals(at, &[goal]).expect("written");
     writer.note(at, &Note { level: Level::Error, text: "lost".to_owned() }).expect("written");
     writer.told(Topic::Commands, at, &json!({ "command": "stop" })).expect("written");
     let default = default_rig();
@@ -106,7 +108,7 @@ fn the_python_package_reads_what_was_written() {
     writer.finish().expect("finished");
 
     let Some(found) = read_by_python(&file) else { return };
-    assert_eq!(found["statistics"], 25 * 3 + 8);
+    assert_eq!(found["statistics"], 25 * 3 + 9);
     assert!(found["chunks"].as_u64().is_some_and(|chunks| chunks >= 3), "{}", found["chunks"]);
     assert_eq!(found["attachments"], json!({ "rig.toml": "x = 1" }));
     let messages = &found["messages"];
@@ -120,6 +122,8 @@ fn the_python_package_reads_what_was_written() {
         json!(["jpeg", "right_eye_optical", "ffd80207", begun + 703_000_000])
     );
     assert_eq!(messages["/joints"][24], json!([["head_z", 0.5]]));
+    assert_eq!(messages["/joints/goals"], json!([[["head_z", 0.75]]]));
+    assert_eq!(found["schemas"]["/joints/goals"], "foxglove.JointStates");
     assert_eq!(messages["/notes"], json!([[4, "lost"]]));
     assert_eq!(messages["/commands"], json!([{ "command": "stop" }]));
     assert_eq!(found["schemas"]["/joints"], "foxglove.JointStates");

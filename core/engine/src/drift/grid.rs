@@ -20,8 +20,10 @@ use crate::twin::command::TwinCommand;
 const SETTLES: Duration = Duration::from_millis(1500);
 /// So many looks make a place.
 pub(super) const LOOKS: usize = 5;
-/// The eyes have found it within this, or it is not seen.
+/// The eyes have found it within this, of time in which they look, or it is not seen.
 const SEEN_WITHIN: Duration = Duration::from_secs(8);
+/// Pairs that can be looked at come more often than this, or the eyes were away, or had to wait, in between.
+const AWAY: Duration = Duration::from_secs(1);
 /// What could not be written is tried again after this, or with the next place.
 const TRIED_AGAIN: Duration = Duration::from_secs(15);
 /// A thing that comes out farther from its target than this is another one, m.
@@ -56,6 +58,8 @@ pub(super) struct GridRun {
     rows: Vec<LocalizationRow>,
     /// Of the place where it is.
     looks: Vec<LocalizationRow>,
+    /// Until then it was looked at.
+    seen_until: Instant,
     /// The newest pair that counted.
     looked_at: Option<Instant>,
     /// The session, once it is on disk.
@@ -81,6 +85,7 @@ impl GridRun {
             stage: Stage::Asks,
             rows: Vec::new(),
             looks: Vec::new(),
+            seen_until: context.time.instant,
             looked_at: None,
             folder: None,
             keeping: None,
@@ -166,11 +171,19 @@ impl GridRun {
             && now >= until
         {
             self.stage = Stage::Looks(until);
+            self.seen_until = until;
         }
-        let Stage::Looks(since) = self.stage else { return };
+        let Stage::Looks(mut since) = self.stage else { return };
         if around.waits_because().is_some() {
             return;
         }
+        // Eyes that were lost on the way, or had to wait, have not missed it meanwhile.
+        let away = now.saturating_duration_since(self.seen_until);
+        if away > AWAY {
+            since += away;
+            self.stage = Stage::Looks(since);
+        }
+        self.seen_until = now;
         if let Some((captured, row)) = self.look(around, since) {
             self.looked_at = Some(captured);
             self.looks.push(row);

@@ -1,24 +1,26 @@
-//! An evaluation whose disk is full: nothing of it is lost, nobody is told without end.
+//! An evaluation whose disk is full: nothing of it is lost, nobody is told without end. And one whose eyes are lost.
 
 use std::path::Path;
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use plumbline_effects::RobotModel;
 use plumbline_model::robot::default_rig;
-use plumbline_model::{Point, Session};
+use plumbline_model::{ClassNames, Point, Session, Stamp};
 
 use super::command::{DriftCommand, GridCommand};
-use super::view::GridRunView;
+use super::grid::LOOKS;
+use super::view::{GridDoing, GridRunView};
 use super::work::DriftWork;
 use super::{DriftAround, DriftWorkflow};
+use crate::detect::view::{AllBecause, DetectionTiming, DetectionsView, LookedAt};
 use crate::ground::jobs::JobId;
 use crate::ground::jobs::list::JobList;
 use crate::ground::notice::Notices;
 use crate::ground::stage::Skipped;
 use crate::ground::{Asked, Context, LongWork as _, Moment, Time, Workflow as _, World};
 use crate::robot::RobotControl;
-use crate::robot::view::{Connection, RobotView};
+use crate::robot::view::{Connection, MotionState, RobotView};
 use crate::twin::command::TwinCommand;
 use crate::twin::view::{ToyView, TwinView};
 
@@ -117,6 +119,52 @@ impl Desk {
         let moment = Moment { now: self.time.instant, skipped: Skipped::default() };
         self.room.view(&self.around, &moment).grid.run.clone().expect("begun")
     }
+}
+
+/// A detector that has looked at the newest pair and found nothing.
+fn found_nothing(captured_at: Instant) -> Arc<DetectionsView> {
+    Arc::new(DetectionsView {
+        stamp: Stamp { seq: 1, captured_at },
+        names: ClassNames::default(),
+        objects: Vec::new(),
+        no_places_because: None,
+        looked_at: LookedAt::All(AllBecause::Unknown),
+        timing: DetectionTiming::default(),
+        left_out: 0,
+    })
+}
+
+#[test]
+fn eyes_that_were_lost_on_the_way_or_had_to_wait_have_not_missed_the_thing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut desk = Desk::new(folder.path());
+    let robot = |motion| {
+        let connection = Connection::Connected { to: "a robot".to_owned(), twin: false };
+        let measured = Some(default_rig().home());
+        Arc::new(RobotView { connection, measured, motion, ..RobotView::default() })
+    };
+    desk.around.robot = robot(MotionState::Holding { why: None });
+    desk.ask(GridCommand::Begin { object: "Tomato".to_owned() });
+    desk.ask(GridCommand::Placed);
+    let looked = |desk: &mut Desk, seconds: u64| {
+        for _ in 0..20 * seconds {
+            desk.around.found = Some(found_nothing(desk.time.instant));
+            desk.passes(Duration::from_millis(50));
+        }
+        desk.run_view().doing
+    };
+    let looks = GridDoing::Looks { looks: 0, of: LOOKS };
+    assert_eq!(looked(&mut desk, 5), looks);
+    // A plug is pulled for half a minute.
+    desk.time = desk.time.after(Duration::from_secs(30));
+    assert_eq!(looked(&mut desk, 2), looks, "it goes on where it was");
+    // The arm moves meanwhile, and hides what lies there.
+    desk.around.robot =
+        robot(MotionState::Moving { what: "home".to_owned(), fraction: None, remaining: None });
+    assert_eq!(looked(&mut desk, 20), looks);
+    desk.around.robot = robot(MotionState::Holding { why: None });
+    assert_eq!(looked(&mut desk, 1), looks);
+    assert_eq!(looked(&mut desk, 4), GridDoing::NotSeen, "after eight seconds of looking it says so");
 }
 
 #[test]

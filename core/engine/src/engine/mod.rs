@@ -5,6 +5,8 @@ mod hub;
 pub mod journal;
 mod libraries;
 mod pipeline;
+#[cfg(test)]
+mod recording_cost;
 pub mod replay;
 pub mod settings;
 #[cfg(test)]

@@ -147,7 +147,7 @@ impl Pipeline {
         let start = Start { bell, trial: &shared.trial };
         let (frames_in, frames) = newest_value_slot();
         let (notes_in, notes) = crossbeam_channel::bounded(NOTES_WAITING);
-        let eyes = TwinEyesPlug::default();
+        let eyes = TwinEyesPlug::new(shared.trial.eyes().cloned());
         let desk = TwinDesk::new(eyes.clone()).with_truth(truth);
         let worker = Worker::new(default_rig(), data_dir, shared.switches.clone(), desk);
         let player = Player::with_opener(eyes.opener());

@@ -11,7 +11,7 @@ use jiff::Timestamp;
 use plumbline_hardware::{QUALITY, encode_jpeg};
 use plumbline_model::EyesThen;
 use plumbline_recording::{
-    Counts, EyePlaces, JointReading, Jpeg, Note, Outline, RecordingError, RecordingWriter, Topic,
+    Counts, EyePlaces, JointGoal, JointReading, Jpeg, Note, Outline, RecordingError, RecordingWriter, Topic,
 };
 use serde_json::Value;
 
@@ -37,8 +37,8 @@ pub enum Item {
         /// Where they were, where that is known.
         places: Option<Box<EyePlaces>>,
     },
-    /// Angles of joints.
-    Joints(Timestamp, Vec<JointReading>),
+    /// Angles of joints, and what they were told.
+    Joints(Timestamp, Vec<JointReading>, Vec<JointGoal>),
     /// A message for the operator.
     Note(Timestamp, Note),
     /// What only this program knows.
@@ -168,7 +168,10 @@ fn write(
                     None => _ = told.dropped.fetch_add(1, Ordering::Relaxed),
                 }
             }
-            Item::Joints(at, readings) => writer.joints(at, &readings)?,
+            Item::Joints(at, readings, goals) => {
+                writer.joints(at, &readings)?;
+                writer.goals(at, &goals)?;
+            }
             Item::Note(at, note) => writer.note(at, &note)?,
             Item::Told(topic, at, value) => writer.told(topic, at, &value)?,
             Item::Outlines(at, seen) => writer.outlines(at, &seen)?,

@@ -9,7 +9,7 @@ use plumbline_hardware::SourceSpec;
 use plumbline_model::robot::default_rig;
 use plumbline_model::session::Session;
 use plumbline_model::{Beside, EyesThen, Stamp, StereoFrame, Unattended};
-use plumbline_recording::{EyePlaces, FILE, Jpeg, Recording, Topic};
+use plumbline_recording::{EyePlaces, FILE, JointGoal, Jpeg, Recording, Topic};
 use serde_json::json;
 
 use super::command::RecordingCommand;
@@ -20,7 +20,7 @@ use crate::ground::jobs::list::JobList;
 use crate::ground::notice::{NoticeLevel, Notices};
 use crate::ground::stage::Skipped;
 use crate::ground::{Asked, Context, LongWork as _, Moment, Time, Workflow as _, World};
-use crate::robot::view::RobotView;
+use crate::robot::view::{JointView, RobotView};
 
 struct Desk {
     room: RecordingWorkflow,
@@ -176,6 +176,33 @@ fn how_the_eyes_were_and_what_the_cameras_sent_is_in_it_as_it_was() {
     assert!(second.eyes.is_unknown());
     let told = recording.robot_from_left().expect("readable");
     assert_eq!((told.len(), told[0].at), (1, first.at));
+}
+
+#[test]
+fn what_joints_are_told_is_in_it_beside_where_they_are_and_limp_ones_are_told_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut desk = Desk::new(folder.path(), true);
+    desk.apply(RecordingCommand::Start);
+    let rig = default_rig();
+    let robot = |goals_rad: [Option<f64>; 2]| {
+        let joint = |k: usize| {
+            let servo = &rig.servos[k];
+            let unheard = JointView::unheard(servo, rig.limits(servo.joint));
+            JointView { angle_rad: Some(0.1), goal_rad: goals_rad[k], ..unheard }
+        };
+        RobotView { joints: Arc::from([joint(0), joint(1)]), ..RobotView::default() }
+    };
+    for goals_rad in [[Some(0.3), None], [None, None]] {
+        desk.room.read(&robot(goals_rad), Time::now());
+    }
+    desk.apply(RecordingCommand::Stop);
+    let session = desk.view().last.as_ref().expect("finished").session.clone();
+    let mut recording = Recording::open(&session.join(FILE)).expect("a recording");
+    let (joints, goals) = (recording.joints().expect("readable"), recording.goals().expect("readable"));
+    assert_eq!(joints.iter().map(|told| told.what.len()).collect::<Vec<_>>(), [2, 2]);
+    let told = JointGoal { name: rig.servos[0].joint_name.clone(), angle_rad: 0.3 };
+    assert_eq!(goals.iter().map(|told| told.what.clone()).collect::<Vec<_>>(), [vec![told], vec![]]);
+    assert_eq!(goals[0].at, joints[0].at);
 }
 
 #[test]

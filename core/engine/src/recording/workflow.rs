@@ -7,7 +7,7 @@ use std::sync::Arc;
 use jiff::Timestamp;
 use plumbline_hardware::SourceSpec;
 use plumbline_model::{Eye, EyesThen, PixelBox, StereoCameras, StereoFrame};
-use plumbline_recording::{EyePlaces, JointReading, Level, Note, Outline, Topic};
+use plumbline_recording::{EyePlaces, JointGoal, JointReading, Level, Note, Outline, Topic};
 use serde_json::{Value, json};
 
 use super::command::RecordingCommand;
@@ -161,7 +161,7 @@ impl RecordingWorkflow {
         }
     }
 
-    /// Joints were read.
+    /// Joints were read. What they were told stands beside it, also where that is nothing any more.
     pub fn read(&self, robot: &RobotView, time: Time) {
         let Some(recorder) = self.recorder() else { return };
         let reading = |joint: &JointView| {
@@ -171,9 +171,12 @@ impl RecordingWorkflow {
                 speed_rad_s: joint.speed_rad_s,
             })
         };
+        let goal =
+            |joint: &JointView| Some(JointGoal { name: joint.name.clone(), angle_rad: joint.goal_rad? });
         let readings: Vec<JointReading> = robot.joints.iter().filter_map(reading).collect();
         if !readings.is_empty() {
-            recorder.put(Item::Joints(time.day, readings));
+            let goals = robot.joints.iter().filter_map(goal).collect();
+            recorder.put(Item::Joints(time.day, readings, goals));
         }
     }
 

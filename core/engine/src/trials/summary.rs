@@ -156,6 +156,7 @@ fn name(failure: Failure) -> &'static str {
         Failure::ReachWrong => "reach-wrong",
         Failure::Slipped => "slipped",
         Failure::Halted => "halted",
+        Failure::EyesLost => "eyes-lost",
     }
 }
 

@@ -298,6 +298,22 @@ fn it_goes_on_after_a_restart_and_what_was_broken_off_is_made_again() {
 }
 
 #[test]
+fn an_attempt_in_which_the_eyes_were_lost_is_no_failure_of_the_method_and_is_made_again() {
+    let mut lab = Lab::new(true);
+    lab.tell(begin(2, 1));
+    lab.after_s(2.0);
+    lab.wishes();
+    let why = "the eyes give no pairs: the left camera was unplugged; plug it in again".to_owned();
+    lab.grasped("blind", Outcome::Failed { failure: plumbline_grasp::Failure::EyesLost, why });
+    lab.after_s(0.1);
+    let view = lab.after_s(2.0);
+    let TrialsPhase::Paused { why } = &view.phase else { panic!("{view:?}") };
+    assert!(why.contains("was unplugged") && why.contains("made again"), "{why}");
+    assert_eq!(view.shown.as_ref().expect("one is shown").made, 0, "it does not count");
+    assert_eq!(stage(&lab.tell(TrialsCommand::GoOn)), Some(TrialStage::Laying));
+}
+
+#[test]
 fn on_the_robot_a_person_lays_it_down_and_has_the_last_word() {
     let mut lab = Lab::new(false);
     let view = lab.tell(begin(1, 1));

@@ -9,14 +9,23 @@ use plumbline_hardware::{
 use plumbline_twin::SceneSource;
 use plumbline_twin::eyes::{TwinEyes, TwinEyesOptions};
 
+use crate::ground::watched::MadeUpEyes;
+
 /// Holds the running twin's world, if there is one.
 #[derive(Clone, Default)]
 pub struct TwinEyesPlug {
     scene: Arc<Mutex<Option<SceneSource>>>,
     looks: Arc<AtomicU64>,
+    /// Eyes of a test, in place of the twin's.
+    made_up: Option<MadeUpEyes>,
 }
 
 impl TwinEyesPlug {
+    /// Nothing runs yet; a test may have eyes of its own.
+    pub fn new(made_up: Option<MadeUpEyes>) -> Self {
+        Self { made_up, ..Self::default() }
+    }
+
     /// Another twin runs, or none.
     pub fn set(&self, scene: Option<SceneSource>) {
         *self.scene.lock().unwrap_or_else(PoisonError::into_inner) = scene;
@@ -28,6 +37,9 @@ impl TwinEyesPlug {
     }
 
     fn open(&self) -> Result<Box<dyn StereoSource>, SourceError> {
+        if let Some(eyes) = &self.made_up {
+            return Ok(eyes());
+        }
         let scene = self.scene.lock().unwrap_or_else(PoisonError::into_inner).clone();
         let scene = scene.ok_or(SourceError::TwinNotRunning)?;
         let looks = self.looks.clone();

@@ -54,7 +54,10 @@ impl Running<'_> {
         self.follow(Step::Again, std::slice::from_ref(&opened), AIR_RAD_S)?;
         self.follow(Step::Again, &back, AIR_RAD_S)?;
         match self.try_once() {
-            Err(End::Failed(Failure::Halted, halted)) => Err(End::Failed(Failure::Halted, halted)),
+            // Of whether it can be grasped these say nothing.
+            Err(End::Failed(ended @ (Failure::Halted | Failure::EyesLost), why)) => {
+                Err(End::Failed(ended, why))
+            }
             Err(End::Failed(_, second) | End::Refused(second)) => {
                 Err(End::Failed(failure, format!("{why}; it was tried again: {second}")))
             }

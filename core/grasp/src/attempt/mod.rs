@@ -109,7 +109,7 @@ impl From<End> for Outcome {
 impl From<Halt> for End {
     fn from(halt: Halt) -> Self {
         match halt {
-            Halt::Blind(_) => Self::Failed(Failure::NotSeen, halt.to_string()),
+            Halt::Blind(_) => Self::Failed(Failure::EyesLost, halt.to_string()),
             other => Self::Failed(Failure::Halted, other.to_string()),
         }
     }

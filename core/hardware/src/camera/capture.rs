@@ -119,15 +119,15 @@ impl V4lCamera {
 }
 
 /// A frame as OpenCV hands it out: pixels, or one row of bytes that are a JPEG.
-fn captured(received: &Mat) -> Result<Captured, String> {
+pub(super) fn captured(received: &Mat) -> Result<Captured, String> {
     let is_sent = received.rows() == 1 && received.channels() == 1;
     if !is_sent {
         return Ok(Captured { image: cv::rgb_image(received)?, jpeg: None });
     }
-    let bytes = received.data_bytes().map_err(|error| cv::message(&error))?;
-    if !jpeg::is_complete(bytes) {
+    let buffer = received.data_bytes().map_err(|error| cv::message(&error))?;
+    let Some(bytes) = jpeg::whole(buffer) else {
         return Err("the frame is damaged: its end is missing".to_owned());
-    }
+    };
     let sent = Vector::from_slice(bytes);
     let pixels = imgcodecs::imdecode(&sent, imgcodecs::IMREAD_COLOR).map_err(|error| cv::message(&error))?;
     // What is recorded must be read by every program.
@@ -185,11 +185,12 @@ mod tests {
     #[test]
     fn what_a_camera_has_compressed_is_kept_as_it_was_sent() {
         let image = RgbImage::from_fn(64, 48, |u, v| Rgb([(3 * u) as u8, (4 * v) as u8, 90]));
-        let mut sent = jpeg::encode(&image, jpeg::QUALITY).expect("small");
-        // Cameras fill their buffers up.
-        sent.extend([0; 100]);
-        let received =
-            Mat::new_rows_cols_with_bytes::<u8>(1, sent.len() as i32, &sent).expect("bytes").clone_pointee();
+        let sent = jpeg::encode(&image, jpeg::QUALITY).expect("small");
+        // The rest of the buffer is not of this frame.
+        let buffer = [&sent[..], &sent[300..], &[0; 100]].concat();
+        let received = Mat::new_rows_cols_with_bytes::<u8>(1, buffer.len() as i32, &buffer)
+            .expect("bytes")
+            .clone_pointee();
         let found = captured(&received).expect("whole");
         assert_eq!(found.jpeg.as_deref(), Some(&sent[..]));
         assert_eq!(found.image.dimensions(), (64, 48));

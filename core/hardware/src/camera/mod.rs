@@ -161,3 +161,6 @@ impl StereoSource for CameraSource {
 
 #[cfg(test)]
 mod tests;
+
+#[cfg(test)]
+mod compressed_tests;

@@ -5,7 +5,7 @@ use std::path::Path;
 use jiff::{SignedDuration, Timestamp};
 use plumbline_model::EyesThen;
 use plumbline_model::robot::default_rig;
-use plumbline_recording::{About, Attached, EyePlaces, JointReading, Jpeg, RecordingWriter};
+use plumbline_recording::{About, Attached, EyePlaces, JointGoal, JointReading, Jpeg, RecordingWriter};
 
 fn at(seconds: f64) -> Timestamp {
     let start: Timestamp = "2026-11-21T10:04:00Z".parse().expect("a time");
@@ -32,24 +32,69 @@ pub(crate) fn places() -> EyePlaces {
     EyePlaces { robot_from_left, right_from_left: rig.eyes.cameras.right_from_left }
 }
 
-/// Twenty pairs a second for six seconds; angles from 0.2 s on. It says where the eyes were.
-pub(crate) fn recorded(file: &Path) {
-    recorded_with(file, Some(&places()));
+/// Pan that is commanded after a pair of this number was taken, rad: the head follows it.
+pub(crate) fn commanded_rad(number: u32) -> f64 {
+    0.01 * f64::from(number) + 0.03
 }
 
-/// The same, of a program that may not say where the eyes were.
-pub(crate) fn recorded_with(file: &Path, places: Option<&EyePlaces>) {
+/// What is said of a pair.
+pub(crate) struct Said {
+    pub places: Option<EyePlaces>,
+    pub goals: Option<Vec<JointGoal>>,
+}
+
+fn goal(name: &str, angle_rad: f64) -> JointGoal {
+    JointGoal { name: name.to_owned(), angle_rad }
+}
+
+/// Twenty pairs a second for six seconds; angles from 0.2 s on. It says where the eyes were, and what both joints of
+/// the head were told.
+pub(crate) fn recorded(file: &Path) {
+    recorded_with(file, |number| Said {
+        places: Some(places()),
+        goals: Some(vec![goal("head_z", commanded_rad(number)), goal("head_y", -0.5)]),
+    });
+}
+
+/// The same, of a head that is limp up and down from the pair 60 to the pair 69, and while it turns in three pairs
+/// nobody knows where the eyes are.
+pub(crate) fn recorded_with_gaps(file: &Path) {
+    recorded_with(file, |number| Said {
+        places: Some(places()).filter(|_| !(30..33).contains(&number)),
+        goals: Some(match number {
+            60..70 => vec![goal("head_z", commanded_rad(number))],
+            _ => vec![goal("head_z", commanded_rad(number)), goal("head_y", -0.5)],
+        }),
+    });
+}
+
+/// The same, with a calibration of the eyes inside.
+pub(crate) fn recorded_carrying(file: &Path, calibration: &[u8]) {
+    let calibration = Attached {
+        name: "rig-cameras.yaml".to_owned(),
+        media_type: "application/yaml".to_owned(),
+        bytes: calibration.into(),
+    };
+    write(file, vec![calibration], |_| Said { places: None, goals: None });
+}
+
+/// The same, of a program that may not say where the eyes were, or what was told.
+pub(crate) fn recorded_with(file: &Path, said: impl Fn(u32) -> Said) {
     let rig = Attached {
         name: "rig.toml".to_owned(),
         media_type: "application/toml".to_owned(),
         bytes: b"name = 1".into(),
     };
+    write(file, vec![rig], said);
+}
+
+fn write(file: &Path, attached: Vec<Attached>, said: impl Fn(u32) -> Said) {
     let about = About {
         software: "plumbline test".to_owned(),
         rig: "nico".to_owned(),
         of_twin: true,
         cameras: None,
-        attached: vec![rig],
+        attached,
     };
     let mut writer = RecordingWriter::create(file, at(0.0), &about).expect("begun");
     for number in 0..120 {
@@ -58,8 +103,14 @@ pub(crate) fn recorded_with(file: &Path, places: Option<&EyePlaces>) {
             writer.joints(time, &joints(0.01 * f64::from(number))).expect("written");
         }
         let images = [jpeg((number % 200) as u8), jpeg(250)];
-        writer.pair(time, number as u64, images, None).expect("written");
-        writer.eyes(time, number as u64, &EyesThen::default(), places).expect("written");
+        let said = said(number);
+        writer.pair(time, number.into(), images, None).expect("written");
+        let then = EyesThen::default();
+        writer.eyes(time, number.into(), &then, said.places.as_ref()).expect("written");
+        // Soon after the pair: whoever commands has seen it.
+        if let Some(goals) = said.goals {
+            writer.goals(at(0.05 * f64::from(number) + 0.02), &goals).expect("written");
+        }
     }
     writer.finish().expect("finished");
 }

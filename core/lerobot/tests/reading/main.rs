@@ -8,12 +8,15 @@ use std::path::Path;
 
 use parquet::file::reader::{FileReader as _, SerializedFileReader};
 use parquet::record::{Field, Row};
-use plumbline_lerobot::{ExportError, Options, export};
-use plumbline_model::Unattended;
+use plumbline_lerobot::{ExportError, NotCommanded, Options, export};
+use plumbline_model::formats::native;
 use plumbline_model::robot::default_rig;
+use plumbline_model::{StereoCalibration, Unattended};
 use serde_json::{Value, json};
 
-use crate::made::{places, recorded, recorded_with};
+use crate::made::{
+    Said, commanded_rad, places, recorded, recorded_carrying, recorded_with, recorded_with_gaps,
+};
 
 fn read(file: &Path) -> Vec<Row> {
     let file = File::open(file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
@@ -72,12 +75,17 @@ fn a_recording_becomes_an_episode_that_is_read_through_the_layout() {
         let Field::ListInternal(state) = value(row, "observation.state") else { panic!("{row}") };
         let angle = 0.01 * (number + 4) as f64;
         assert_eq!(state.elements(), [Field::Float(angle as f32), Field::Float(-0.5)], "{number}");
+        let Field::ListInternal(action) = value(row, "action") else { panic!("{row}") };
+        let told = commanded_rad(number as u32 + 4) as f32;
+        assert_eq!(action.elements(), [Field::Float(told), Field::Float(-0.5)], "the answer to {number}");
         let Field::Group(image) = value(row, "observation.images.left_eye") else { panic!("{row}") };
         let Field::Bytes(bytes) = value(image, "bytes") else { panic!("{image}") };
         let image = image::load_from_memory(bytes.data()).expect("a picture").to_rgb8();
         assert!(image.get_pixel(9, 9).0[0].abs_diff((number + 4) as u8) < 3, "pair {number}");
     }
-    assert!(exported.has_places);
+    assert!(exported.has_places && exported.without_place == 0);
+    assert_eq!((&exported.actions, &exported.not_commanded), (&exported.joints, &vec![]));
+    assert_eq!(info["features"]["action"]["names"], json!(["head_z", "head_y"]));
     let robot_from_left = places().robot_from_left.isometry.to_homogeneous();
     let Field::ListInternal(place) = value(&rows[50], "observation.robot_from_left_eye") else { panic!() };
     let expected: Vec<Field> =
@@ -93,6 +101,8 @@ fn a_recording_becomes_an_episode_that_is_read_through_the_layout() {
     assert_eq!(stats["observation.state"]["count"], json!([116]));
     let least = stats["observation.state"]["min"][0].as_f64().expect("a number");
     assert!((least - 0.04).abs() < 1e-6, "{least}");
+    let most = stats["action"]["max"][0].as_f64().expect("a number");
+    assert!((most - commanded_rad(119)).abs() < 1e-6, "{most}");
 
     let told = json_file(&set.join("meta/cameras.json"));
     assert!(
@@ -116,14 +126,78 @@ fn what_cannot_be_exported_is_said() {
 }
 
 #[test]
-fn a_recording_that_does_not_say_where_the_eyes_were_makes_a_set_without_it() {
+fn a_recording_that_does_not_say_where_the_eyes_were_or_what_was_told_makes_a_set_without_it() {
     let folder = tempfile::tempdir().expect("a folder");
     let (log, set) = (folder.path().join("log.mcap"), folder.path().join("set"));
-    recorded_with(&log, None);
+    recorded_with(&log, |_| Said { places: None, goals: None });
     let exported = export(&log, &set, &Options { task: "x", cameras: None }, &Unattended).expect("exported");
-    assert!(!exported.has_places);
-    let info = json_file(&set.join("meta/info.json"));
-    assert!(info["features"].get("observation.robot_from_left_eye").is_none());
+    assert!(!exported.has_places && exported.without_place == 116);
+    assert!(exported.actions.is_empty());
+    let [info, stats] = ["info.json", "stats.json"].map(|name| json_file(&set.join("meta").join(name)));
     let rows = read(&set.join("data/chunk-000/file-000.parquet"));
-    assert!(rows[0].get_column_iter().all(|(name, _)| name != "observation.robot_from_left_eye"));
+    for missing in ["observation.robot_from_left_eye", "action"] {
+        assert!(info["features"].get(missing).is_none() && stats.get(missing).is_none());
+        assert!(rows[0].get_column_iter().all(|(name, _)| name != missing));
+    }
+}
+
+#[test]
+fn the_calibration_that_a_recording_carries_is_taken_where_none_lies_beside_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [log, set, other] = ["log.mcap", "set", "other"].map(|name| folder.path().join(name));
+    let cameras = default_rig().eyes.cameras;
+    let file = folder.path().join("rig-cameras.yaml");
+    native::write(&StereoCalibration::bare(cameras), &file).expect("written");
+    let carried = std::fs::read(&file).expect("just written");
+    recorded_carrying(&log, &carried);
+    let exported = export(&log, &set, &Options { task: "x", cameras: None }, &Unattended).expect("exported");
+    assert!(exported.has_cameras);
+    let given = Options { task: "x", cameras: Some(&cameras) };
+    export(&log, &other, &given, &Unattended).expect("exported");
+    let [taken, given] = [&set, &other].map(|set| json_file(&set.join("meta/cameras.json")));
+    assert_eq!(taken, given);
+    // One that is damaged is none, and the rest is exported all the same.
+    let [log, set] = ["cut.mcap", "cut"].map(|name| folder.path().join(name));
+    recorded_carrying(&log, &carried[..carried.len() / 2]);
+    let exported = export(&log, &set, &Options { task: "x", cameras: None }, &Unattended).expect("exported");
+    assert!(!exported.has_cameras && exported.frames == 116);
+    assert!(!set.join("meta/cameras.json").exists());
+}
+
+#[test]
+fn what_is_missing_of_some_pairs_removes_nothing_of_the_others_and_is_no_number() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (log, set) = (folder.path().join("log.mcap"), folder.path().join("set"));
+    recorded_with_gaps(&log);
+    let exported = export(&log, &set, &Options { task: "x", cameras: None }, &Unattended).expect("exported");
+    assert_eq!((exported.has_places, exported.without_place), (true, 3));
+    assert_eq!(exported.actions, ["head_z"]);
+    assert_eq!(exported.not_commanded, [NotCommanded { joint: "head_y".to_owned(), frames: 10 }]);
+    let rows = read(&set.join("data/chunk-000/file-000.parquet"));
+    let robot_from_left = places().robot_from_left.isometry.to_homogeneous();
+    for (number, row) in rows.iter().enumerate() {
+        let Field::ListInternal(place) = value(row, "observation.robot_from_left_eye") else {
+            panic!("{row}")
+        };
+        let is_known = !(30..33).contains(&(number + 4));
+        assert_eq!(place.elements().len(), 16);
+        for (k, told) in place.elements().iter().enumerate() {
+            let Field::Float(told) = told else { panic!("{told}") };
+            let expected = robot_from_left[(k / 4, k % 4)] as f32;
+            assert!(
+                if is_known { (told - expected).abs() < 1e-6 } else { told.is_nan() },
+                "{number}: {told}"
+            );
+        }
+        // One number alone has no list around it in the layout.
+        let told = commanded_rad(number as u32 + 4) as f32;
+        assert_eq!(value(row, "action"), &Field::Float(told), "{number}");
+    }
+    let stats = json_file(&set.join("meta/stats.json"));
+    let of_places = &stats["observation.robot_from_left_eye"];
+    assert_eq!(of_places["count"], json!([113]), "of those that are known");
+    let height_m = of_places["mean"][11].as_f64().expect("a number, though some are none");
+    assert!((height_m - robot_from_left[(2, 3)]).abs() < 1e-6, "{height_m}");
+    let info = json_file(&set.join("meta/info.json"));
+    assert_eq!(info["features"]["action"]["names"], json!(["head_z"]));
 }

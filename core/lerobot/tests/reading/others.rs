@@ -8,7 +8,7 @@ use plumbline_model::Unattended;
 use plumbline_model::robot::default_rig;
 use serde_json::{Value, json};
 
-use crate::made::recorded;
+use crate::made::{commanded_rad, recorded, recorded_with_gaps};
 
 /// Goes the way that the published layout describes: `info.json`, the episodes, and by what these say the rows.
 const READER: &str = r#"
@@ -61,13 +61,22 @@ for file in sorted((root / "meta/episodes").glob("*/*.parquet")):
                         found["problems"].append("row " + str(number) + ": " + name + " " + str(size))
                 elif feature["shape"] != [1] and len(row[name]) != feature["shape"][0]:
                     found["problems"].append("row " + str(number) + ": " + name)
-        states = [row["observation.state"] for row in rows]
-        found["episodes"].append({"tasks": episode["tasks"], "states": [states[0], states[-1]], "rows": len(rows)})
-        for joint, values in enumerate(zip(*states)):
-            told = [stats["observation.state"][key][joint] for key in ("min", "max", "mean")]
-            own = [min(values), max(values), sum(values) / len(values)]
-            if any(abs(a - b) > 1e-5 for a, b in zip(told, own)):
-                found["problems"].append("statistics: " + str(told) + " " + str(own))
+        listed = lambda value: value if isinstance(value, list) else [value]
+        names_of_angles = [name for name in ("observation.state", "action") if name in rows[0]]
+        of_all = {name: [listed(row[name]) for row in rows] for name in names_of_angles}
+        ends = {name: [values[0], values[-1]] for name, values in of_all.items()}
+        found["episodes"].append({"tasks": episode["tasks"], "ends": ends, "rows": len(rows)})
+        for name, rows_of_it in of_all.items():
+            for joint, values in enumerate(zip(*rows_of_it)):
+                told = [stats[name][key][joint] for key in ("min", "max", "mean")]
+                own = [min(values), max(values), sum(values) / len(values)]
+                if any(abs(a - b) > 1e-5 for a, b in zip(told, own)):
+                    found["problems"].append("statistics: " + name + " " + str(told) + " " + str(own))
+        place = "observation.robot_from_left_eye"
+        unknown = sum(all(value != value for value in row[place]) for row in rows) if place in rows[0] else None
+        if unknown is not None and stats[place]["count"] != [len(rows) - unknown]:
+            found["problems"].append("statistics: " + place + " " + str(stats[place]["count"]))
+        found["episodes"][-1]["unknown"] = unknown
 print(json.dumps(found))
 "#;
 
@@ -99,10 +108,23 @@ fn pyarrow_reads_a_data_set_by_what_it_says_of_itself() {
     let angle = |number: f32| f64::from(0.01 * number);
     let [episode] = found["episodes"].as_array().expect("a list").as_slice() else { panic!("{found}") };
     assert_eq!((&episode["rows"], &episode["tasks"]), (&json!(116), &json!(["Look at the table."])));
-    for (state, number) in [(&episode["states"][0], 4.0), (&episode["states"][1], 119.0)] {
-        let pan = state[0].as_f64().expect("a number");
-        assert!((pan - angle(number)).abs() < 1e-6 && state[1] == json!(-0.5), "{state}");
+    for (end, number) in [(0, 4), (1, 119)] {
+        let [state, action] = ["observation.state", "action"].map(|name| &episode["ends"][name][end]);
+        let [pan, commanded] = [state, action].map(|of| of[0].as_f64().expect("a number"));
+        assert!((pan - angle(number as f32)).abs() < 1e-6 && state[1] == json!(-0.5), "{state}");
+        assert!((commanded - commanded_rad(number)).abs() < 1e-6 && action[1] == json!(-0.5), "{action}");
     }
+    assert_eq!(episode["unknown"], json!(0));
+}
+
+#[test]
+fn pyarrow_reads_a_set_of_which_some_is_not_known() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (log, set) = (folder.path().join("log.mcap"), folder.path().join("set"));
+    recorded_with_gaps(&log);
+    export(&log, &set, &Options { task: "x", cameras: None }, &Unattended).expect("exported");
+    let Some(found) = read_by_python(&set) else { return };
+    assert_eq!((&found["problems"], &found["episodes"][0]["unknown"]), (&json!([]), &json!(3)));
 }
 
 #[test]

@@ -85,6 +85,7 @@ impl Judge {
         let failure = (!lifted && !refused).then(|| match &record.outcome {
             Some(plumbline_grasp::Outcome::Failed { failure: Failure::NotSeen, .. }) => Failure::NotSeen,
             Some(plumbline_grasp::Outcome::Failed { failure: Failure::Halted, .. }) => Failure::Halted,
+            Some(plumbline_grasp::Outcome::Failed { failure: Failure::EyesLost, .. }) => Failure::EyesLost,
             Some(plumbline_grasp::Outcome::Failed { failure: Failure::HandWrong, .. }) => Failure::HandWrong,
             _ if record.slipped_after_s.is_some() => Failure::Slipped,
             _ if camera_error_m.is_some_and(|error_m| error_m > PLACE_WRONG_M) => Failure::PlaceWrong,

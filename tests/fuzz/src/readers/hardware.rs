@@ -48,6 +48,7 @@ fn rest_of_a_recording(file: &Path) -> Vec<String> {
     let Ok(mut recording) = Recording::open(file) else { return vec![] };
     let told = Topic::ALL.map(|topic| match topic {
         Topic::Joints => recording.joints().map(|told| format!("{told:?}")),
+        Topic::Goals => recording.goals().map(|told| format!("{told:?}")),
         Topic::Notes => recording.notes().map(|told| format!("{told:?}")),
         Topic::Transforms => recording.robot_from_left().map(|told| format!("{told:?}")),
         Topic::Eyes => {

@@ -9,7 +9,7 @@ use jiff::{SignedDuration, Timestamp};
 use plumbline_model::EyesThen;
 use plumbline_model::robot::default_rig;
 use plumbline_recording::{
-    About, Attached, EyePlaces, JointReading, Jpeg, Level, Note, Outline, RecordingWriter, Topic,
+    About, Attached, EyePlaces, JointGoal, JointReading, Jpeg, Level, Note, Outline, RecordingWriter, Topic,
 };
 
 use super::{Problem, put};
@@ -66,6 +66,7 @@ fn recording(folder: &Path) -> Result<(), Problem> {
         writer.outlines(at, &[vec![outline], vec![]])?;
         let joint = JointReading { name: "head_z".to_owned(), angle_rad: 0.1, speed_rad_s: None };
         writer.joints(at, &[joint])?;
+        writer.goals(at, &[JointGoal { name: "head_z".to_owned(), angle_rad: 0.2 }])?;
         writer.note(at, &Note { level: Level::Warning, text: "hot".to_owned() })?;
         writer.told(Topic::Commands, at, &serde_json::json!({ "command": number }))?;
     }

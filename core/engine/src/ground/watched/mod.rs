@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 
 pub use fault::ThreadFault;
 pub use pulse::{Pulse, Trouble};
-pub use trial::{Strike, Trial};
+pub use trial::{MadeUpEyes, Strike, Trial};
 
 use super::jobs::panic_message;
 use super::workers::start_shared_workers;

@@ -107,7 +107,7 @@ impl TrialsWorkflow {
         context: &mut Context<'_>,
     ) {
         let (Some(attempt), Some(newest)) = (&mut self.under_way, &around.grasp.newest) else { return };
-        if let Some(Outcome::Failed { failure: Failure::Halted, why }) = &newest.outcome {
+        if let Some(Outcome::Failed { failure: Failure::Halted | Failure::EyesLost, why }) = &newest.outcome {
             let why = format!(
                 "It was broken off ({}), and is made again when you go on.",
                 why.trim_end_matches('.')

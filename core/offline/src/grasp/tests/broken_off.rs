@@ -225,7 +225,7 @@ fn eyes_that_are_lost_on_the_way_end_it_and_what_nobody_saw_lifted_is_not_called
     for at in [Step::Look, Step::Align, Step::Check] {
         let (record, judged) =
             bench.attempt_in(&mut world, &task, &mut Blinded(at)).expect("nothing is kept");
-        assert_eq!(failure(&record), Some(Failure::NotSeen), "{at:?}: {:?}", record.outcome);
+        assert_eq!(failure(&record), Some(Failure::EyesLost), "{at:?}: {:?}", record.outcome);
         let Some(Outcome::Failed { why, .. }) = &record.outcome else { unreachable!("just seen") };
         assert!(why.contains("the eyes give no pairs") && why.contains("look whether"), "{at:?}: {why}");
         assert_eq!(record.step, Some(at));
