@@ -99,12 +99,16 @@ const NAME: f32 = 120.0;
 /// What the longest figure takes: "30.01 ± 0.61 mm".
 const FIGURE: f32 = 112.0;
 const LINE: f32 = 24.0;
+/// Of two lines that belong together.
+const NARROW_LINE: f32 = 18.0;
 
 /// One line of three columns, the figures aligned at their right ends; in a narrow panel the name stands over them.
 fn row(ui: &mut Ui, name: &str, proposed: &str, in_use: &str, heading: bool) {
     let is_narrow = ui.available_width() < NAME + 2.0 * FIGURE;
-    let lines = if is_narrow && !heading { 2.0 } else { 1.0 };
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), lines * LINE), Sense::hover());
+    let is_folded = is_narrow && !heading;
+    let line = if is_folded { NARROW_LINE } else { LINE };
+    let height = if is_folded { 2.0 * line } else { line };
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
     response.widget_info(|| {
         WidgetInfo::labeled(egui::Role::Row, true, format!("{name}: proposal {proposed}, in use {in_use}"))
     });
@@ -115,7 +119,7 @@ fn row(ui: &mut Ui, name: &str, proposed: &str, in_use: &str, heading: bool) {
         ui.painter().text(egui::pos2(x, y), anchor, text, font, color);
     };
     let figures = if is_narrow { rect.width() / 2.0 } else { (rect.width() - NAME) / 2.0 };
-    let [first_y, last_y] = [rect.top() + 0.5 * LINE, rect.bottom() - 0.5 * LINE];
+    let [first_y, last_y] = [rect.top() + 0.5 * line, rect.bottom() - 0.5 * line];
     text(ui, name, [rect.left(), first_y], Align2::LEFT_CENTER, tokens.text_weak);
     text(ui, proposed, [rect.right() - figures, last_y], Align2::RIGHT_CENTER, tokens.text_strong);
     let in_use_color = if heading { tokens.text_strong } else { tokens.text };

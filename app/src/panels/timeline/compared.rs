@@ -16,7 +16,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let timeline = &cx.view.timeline;
     let mut chosen: Vec<&TimelineEntry> =
         cx.state.timeline.chosen.iter().filter_map(|number| timeline.entry(*number)).collect();
-    chosen.sort_by_key(|entry| entry.number);
+    chosen.sort_by_key(|entry| (entry.at, entry.number));
     let [first, second] = chosen[..] else {
         let message = Message::new("Nothing to compare", "Click two entries of the timeline.");
         EmptyState::empty(message).show(ui);

@@ -63,8 +63,10 @@ pub fn read(file: &Path) -> Result<Vec<TimelineEntry>, TimelineError> {
     let Some(kept) = kept else { return Ok(Vec::new()) };
     let wrong = |why: String| TimelineError::NoTimeline { file: file.to_owned(), why };
     let entries = kept.entries.into_owned();
-    if entries.windows(2).any(|two| two[0].number >= two[1].number) {
-        return Err(wrong("its entries are not numbered in their order".to_owned()));
+    let mut numbers: Vec<u64> = entries.iter().map(|entry| entry.number).collect();
+    numbers.sort_unstable();
+    if let Some(two) = numbers.windows(2).find(|two| two[0] == two[1]) {
+        return Err(wrong(format!("two of its entries have the number {}", two[0])));
     }
     let figures = entries.iter().flat_map(|entry| [entry.before, entry.after]).flatten();
     if let Some(figure) = figures.map(|figure| figure.value()).find(|value| !(0.0..1e6).contains(value)) {

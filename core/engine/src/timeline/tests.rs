@@ -173,6 +173,28 @@ fn what_is_in_use_when_the_line_begins_stands_at_its_beginning() {
 }
 
 #[test]
+fn what_is_learned_later_stands_where_its_time_is_and_is_read_again() {
+    let folder = folder();
+    let at = |time: &str| Some(time.parse().expect("a time"));
+    let mount =
+        |time: &str| Standing { subject: Subject::Mount, accepted: at(time), ..eyes(Some("m"), Some(0.1)) };
+    let mut lab = Lab::on(folder.path(), TimelineAround::default());
+    lab.now(vec![mount("2026-09-14T11:00:00Z")]);
+    // The calibration of the eyes is read later than that of the mount, and was made before.
+    let eyes_in_use = Standing { accepted: at("2026-09-14T10:00:00Z"), ..eyes(Some("a"), Some(0.2)) };
+    let view = lab.now(vec![mount("2026-09-14T11:00:00Z"), eyes_in_use.clone()]);
+    let order =
+        |view: &TimelineView| -> Vec<_> { view.entries.iter().map(|e| (e.subject, e.number)).collect() };
+    assert_eq!(order(&view), [(Subject::Eyes, 2), (Subject::Mount, 1)]);
+    // What comes into use now stands at the end, with a number of its own.
+    let view = lab.now(vec![mount("2026-09-14T11:00:00Z"), eyes(Some("b"), Some(0.1))]);
+    let after = [(Subject::Eyes, 2), (Subject::Mount, 1), (Subject::Eyes, 3)];
+    assert_eq!(order(&view), after);
+    let mut again = Lab::on(folder.path(), TimelineAround::default());
+    assert_eq!(order(&again.view()), after, "as it was kept");
+}
+
+#[test]
 fn findings_and_checks_stand_there_once() {
     let folder = folder();
     let finding = |id: &str, made: &str| Finding {

@@ -98,7 +98,14 @@ impl TimelineWorkflow {
 
 /// The number of the next entry.
 fn next_number(entries: &[TimelineEntry]) -> u64 {
-    entries.last().map_or(1, |entry| entry.number + 1)
+    entries.iter().map(|entry| entry.number).max().map_or(1, |largest| largest + 1)
+}
+
+/// Puts an entry where its time is: what was done by another program is learned later than it was done, and in any
+/// order. Those of one kind stay in the order in which they came, since each begins where the one before ended.
+fn put(entries: &mut Vec<TimelineEntry>, entry: TimelineEntry) {
+    let before = entries.iter().rposition(|other| other.subject == entry.subject || other.at <= entry.at);
+    entries.insert(before.map_or(0, |before| before + 1), entry);
 }
 
 /// The last entry that says what is in use of a kind.
@@ -151,7 +158,7 @@ fn take_standing(
         outside: is_first && kind != EntryKind::Found,
         by_undo,
     };
-    entries.push(entry);
+    put(entries, entry);
     true
 }
 
@@ -163,7 +170,7 @@ fn take_findings(entries: &mut Vec<TimelineEntry>, around: &TimelineAround) {
     let mut new: Vec<_> = around.findings.iter().filter(|found| !is_known(entries, &found.id)).collect();
     new.sort_by_key(|found| found.made);
     for found in new {
-        entries.push(TimelineEntry {
+        let entry = TimelineEntry {
             number: next_number(entries),
             at: found.made,
             subject: Subject::Finding,
@@ -176,7 +183,8 @@ fn take_findings(entries: &mut Vec<TimelineEntry>, around: &TimelineAround) {
             id_after: Some(found.id.clone()),
             outside: false,
             by_undo: false,
-        });
+        };
+        put(entries, entry);
     }
 }
 
@@ -205,7 +213,7 @@ fn take_measured(entries: &mut Vec<TimelineEntry>, measured: &Measured, now: Tim
         }
         return;
     }
-    entries.push(TimelineEntry {
+    let entry = TimelineEntry {
         number: next_number(entries),
         at: measured.at.unwrap_or(now),
         subject: measured.subject,
@@ -218,7 +226,8 @@ fn take_measured(entries: &mut Vec<TimelineEntry>, measured: &Measured, now: Tim
         id_after: Some(measured.id.clone()),
         outside: false,
         by_undo: false,
-    });
+    };
+    put(entries, entry);
 }
 
 /// What is in use, with the entries since which it is.
