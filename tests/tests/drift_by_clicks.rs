@@ -56,7 +56,7 @@ fn explain_and_correct(window: &mut Window) {
         !view.gap.model.effects.is_empty() && !view.drift.is_busy && far_mm(window) < 0.3 * before_mm
     });
     println!("{before_mm:.1} mm at the far end, corrected {:.1} mm", far_mm(window));
-    click(window, "Undo");
+    click_containing(window, "Undo: ");
     until(window, "the model before", |window| {
         let view = view(window);
         view.gap.model.effects.is_empty() && !view.drift.is_busy && far_mm(window) > 0.7 * before_mm

@@ -10,6 +10,7 @@ use plumbline_widgets::theme::space;
 
 use super::saving::open_file;
 use super::sheet::sheet;
+use super::undo;
 use crate::operator::Outbox;
 
 /// More new messages than this are not all put on screen.
@@ -117,8 +118,10 @@ impl NoticeList {
     }
 
     pub(super) fn show_new(&mut self, ctx: &Context) {
+        // What was just put in use may be taken back at once: they pass by above Undo.
+        let above = vec2(space::M, 68.0 + undo::HEIGHT);
         if !self.history_open
-            && let Some(file) = self.shown.show_toasts(ctx, vec2(space::M, 68.0))
+            && let Some(file) = self.shown.show_toasts(ctx, above)
         {
             open_file(file);
         }

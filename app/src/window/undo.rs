@@ -8,7 +8,7 @@ use crate::operator::actions::undo::undo;
 use crate::operator::words::capitalized;
 use crate::operator::{Action, Outbox, Screen, shortcut_text};
 
-const HEIGHT: f32 = 40.0;
+pub(super) const HEIGHT: f32 = 40.0;
 
 pub(super) fn show(view: &View, screen: Screen, ui: &mut Ui, outbox: &mut Outbox) {
     let undo = undo(view, screen);
