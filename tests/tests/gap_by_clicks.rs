@@ -77,7 +77,7 @@ fn a_hidden_effect_is_found_named_added_and_the_gap_shrinks() {
     let left = view(&window).gap.shown.clone().expect("a finding is shown");
 
     click(&mut window, "History");
-    click(&mut window, "Undo");
+    click_containing(&mut window, "Undo: ");
     until(&mut window, "the nominal model", |window| view(window).gap.model.effects.is_empty());
 
     // The judge.
