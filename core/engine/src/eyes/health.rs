@@ -10,10 +10,10 @@ use plumbline_model::{StereoCalibration, StereoFrame};
 use super::clock::is_live;
 use super::health_by_itself::ByItself;
 use super::view::{EyesHealth, HealthState, HealthView, ProposalHealth};
-use super::warming::Warmth;
 use super::work::{Context, EyesWork, Health, HealthEnded, Pictures};
 use super::workflow::{EyesAround, EyesWorkflow};
 use crate::ground::jobs::JobId;
+use crate::ground::warming::Warmth;
 use crate::source::view::{SourceStatus, SourceView};
 
 /// So many pairs are looked at …

@@ -29,7 +29,6 @@ mod shown;
 pub mod store;
 mod times;
 pub mod view;
-pub mod warming;
 pub mod work;
 mod workflow;
 

@@ -1,7 +1,7 @@
 //! The gate of how warm the eyes are.
 
 use super::view::{Gate, GateState};
-use crate::eyes::warming::Warmth;
+use crate::ground::warming::Warmth;
 
 /// Name of the gate.
 const NAME: &str = "Warmth";

@@ -17,6 +17,7 @@ pub mod statistics;
 pub mod step;
 pub mod text;
 pub mod time;
+pub mod warming;
 pub mod watched;
 pub mod work;
 mod workers;
