@@ -297,8 +297,10 @@ impl Body for LedBody<'_> {
     fn wait(&mut self, duration_s: f64) -> Result<(), Halt> {
         let mut left = plumbline_model::duration::seconds(duration_s).unwrap_or_default();
         loop {
-            self.state_to_go_on()?;
+            // Before it is asked whether it has ended: what ends it lets go of the reins after that, and an arm that
+            // held must not go on in between.
             let paused = self.ropes.reins.is_tight();
+            self.state_to_go_on()?;
             if left.is_zero() && !paused {
                 return Ok(());
             }
