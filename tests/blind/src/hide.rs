@@ -42,6 +42,20 @@ pub struct Wish<K> {
     pub seed: u64,
 }
 
+impl<K> Wish<K> {
+    /// One of a list by hand, not numbered yet: without dirt, with repeats.
+    pub fn of(family: Family, plan: Plan, size_sigmas: f64, kind: Option<K>) -> Self {
+        Self { number: 0, family, plan, dirt: false, repeated: true, size_sigmas, kind, seed: 0 }
+    }
+
+    /// Numbers a list and gives each a seed of its own, from the first on; nothing tells the noise of every fourth.
+    pub fn number(wishes: &mut [Self], first_seed: u64) {
+        for (number, wish) in wishes.iter_mut().enumerate() {
+            (wish.number, wish.seed, wish.repeated) = (number, first_seed + number as u64, number % 4 != 1);
+        }
+    }
+}
+
 /// Kinds of things that can be hidden.
 pub trait Kinds: Copy + PartialEq + 'static {
     /// Those that the library knows.

@@ -23,24 +23,14 @@ fn wishes() -> Vec<Wish<Kind>> {
         (Kind::Backlash, Plan::Rich),
     ];
     let nameless = [Kind::CableStep, Kind::FarCable];
-    let one = |family, plan, size_sigmas, kind| Wish {
-        number: 0,
-        family,
-        plan,
-        dirt: false,
-        repeated: true,
-        size_sigmas,
-        kind,
-        seed: 0,
-    };
     let mut wishes = vec![];
-    wishes.extend([Plan::Plain, Plan::Rich].repeat(2).into_iter().map(|p| one(Family::Null, p, 0.0, None)));
-    wishes.extend(singles.map(|(kind, plan)| one(Family::Single, plan, 2.0, Some(kind))));
-    wishes.extend([None; 4].map(|kind| one(Family::Pair, Plan::Rich, 2.0, kind)));
-    wishes.extend(nameless.map(|kind| one(Family::OffLibrary, Plan::Rich, 5.0, Some(kind))));
-    for (number, wish) in wishes.iter_mut().enumerate() {
-        (wish.number, wish.seed, wish.repeated) = (number, 1900 + number as u64, number % 4 != 1);
-    }
+    wishes.extend(
+        [Plan::Plain, Plan::Rich].repeat(2).into_iter().map(|p| Wish::of(Family::Null, p, 0.0, None)),
+    );
+    wishes.extend(singles.map(|(kind, plan)| Wish::of(Family::Single, plan, 2.0, Some(kind))));
+    wishes.extend([None; 4].map(|kind| Wish::of(Family::Pair, Plan::Rich, 2.0, kind)));
+    wishes.extend(nameless.map(|kind| Wish::of(Family::OffLibrary, Plan::Rich, 5.0, Some(kind))));
+    Wish::number(&mut wishes, 1900);
     wishes
 }
 

@@ -25,25 +25,13 @@ fn wishes() -> Vec<Wish<Kind>> {
         (Kind::ShiftGrows, Plan::Watched),
     ];
     let nameless = [Kind::OneFocal, Kind::RowOffset, Kind::HeadSkew, Kind::NeckMemory];
-    let one = |family, plan, size_sigmas, kind| Wish {
-        number: 0,
-        family,
-        plan,
-        dirt: false,
-        repeated: true,
-        size_sigmas,
-        kind,
-        seed: 0,
-    };
     let plans = [Plan::Plain, Plan::Rich, Plan::Watched];
     let mut wishes = vec![];
-    wishes.extend(plans.repeat(2).into_iter().map(|plan| one(Family::Null, plan, 0.0, None)));
-    wishes.extend(singles.map(|(kind, plan)| one(Family::Single, plan, 3.0, Some(kind))));
-    wishes.extend([None; 4].map(|kind| one(Family::Pair, Plan::Rich, 3.0, kind)));
-    wishes.extend(nameless.map(|kind| one(Family::OffLibrary, Plan::Rich, 3.0, Some(kind))));
-    for (number, wish) in wishes.iter_mut().enumerate() {
-        (wish.number, wish.seed, wish.repeated) = (number, 1900 + number as u64, number % 4 != 1);
-    }
+    wishes.extend(plans.repeat(2).into_iter().map(|plan| Wish::of(Family::Null, plan, 0.0, None)));
+    wishes.extend(singles.map(|(kind, plan)| Wish::of(Family::Single, plan, 3.0, Some(kind))));
+    wishes.extend([None; 4].map(|kind| Wish::of(Family::Pair, Plan::Rich, 3.0, kind)));
+    wishes.extend(nameless.map(|kind| Wish::of(Family::OffLibrary, Plan::Rich, 3.0, Some(kind))));
+    Wish::number(&mut wishes, 1900);
     wishes
 }
 
