@@ -10,6 +10,7 @@ use plumbline_engine::view::{
     DetectView, DetectorFacts, DetectorState, ObjectPlaceView, ObjectView, SeenBox,
 };
 use plumbline_engine::{Command, DetectCommand, DetectorChoice, LiveCommand, Products};
+use plumbline_model::Point;
 use plumbline_model::detection::{ClassNames, PixelBox};
 
 use crate::fake::{Fake, click, says, shows};
@@ -58,6 +59,30 @@ fn a_place_that_rests_on_what_nobody_measured_says_why_its_uncertainty_is_wide()
         click(&mut window, "Tomato, 331, −118, 82 ± 4 mm");
         assert_eq!(says(&window, why), is_told);
     }
+}
+
+#[test]
+fn a_thing_of_known_shape_is_said_to_be_where_it_stands_and_what_the_eyes_alone_say() {
+    let stands = tomato().place.ok().map(|place| ObjectPlaceView {
+        point_in_robot: Point::new(0.325, -0.116, 0.077),
+        sigma_m: [0.002, 0.001, 0.002],
+        ..place
+    });
+    let fake = Fake::over(live(DetectView {
+        found: Some(Arc::new(found(vec![ObjectView { stands, ..tomato() }]))),
+        ..detect()
+    }));
+    let mut window = fake.window_of_size(settings(), TALL);
+    click(&mut window, "Tomato, 325, −116, 77 ± 2 mm");
+    assert!(says(&window, "x: 325.0 ± 2.0 mm") && !says(&window, "x: 331.0"));
+    assert!(says(&window, "By its outline, standing on the table."));
+    assert!(says(&window, "alone say 8.1 ± 4.3 mm beside"));
+    let fake = Fake::over(live(detect()));
+    let mut window = fake.window_of_size(settings(), TALL);
+    click(&mut window, "Tomato, 331, −118, 82 ± 4 mm");
+    assert!(
+        says(&window, "By its pixels and boxes in both eyes.") && !says(&window, "standing on the table")
+    );
 }
 
 /// This object where the eyes see it now, pixels, and how sure they are.

@@ -10,10 +10,7 @@ use plumbline_model::robot::{Posture, Rig};
 use plumbline_model::{LeftCamera, Point, Pose, Robot, StereoCalibration};
 
 use crate::published::HandHeights;
-
-/// The touchscreen's glass lies so much higher than the table on which it stands, where nobody measured
-/// it, m.
-const GLASS_OVER_TABLE_M: f64 = 0.002;
+use crate::table;
 
 /// What a grasp rests on.
 #[derive(Clone, Debug)]
@@ -72,24 +69,14 @@ impl Knowledge {
         Some((self.robot_from_left(posture) * in_left).coords.coords - place.coords.coords)
     }
 
-    /// Height of what things stand on at a place: the glass where the touchscreen lies, the table
-    /// beside it, in the plane in which the screen was found to lie, m.
+    /// Height of what things stand on at a place, see [`table::support_m`].
     pub fn support_m(&self, x_m: f64, y_m: f64) -> f64 {
-        let screen = self.model.touchscreen();
-        let glass_m = self.glass_m(x_m, y_m);
-        let on_glass = screen.contains(screen.pixel_at(Point::new(x_m, y_m, glass_m)));
-        if on_glass {
-            return glass_m;
-        }
-        glass_m - self.model.glass_over_table_m().unwrap_or(GLASS_OVER_TABLE_M)
+        table::support_m(&self.model, x_m, y_m)
     }
 
     /// Height of the glass at a place, or of its plane beside it, m.
     pub fn glass_m(&self, x_m: f64, y_m: f64) -> f64 {
-        let screen = self.model.touchscreen();
-        let normal: Vector3<f64> = screen.normal().vector();
-        let origin = screen.origin.coords.coords;
-        origin.z - (normal.x * (x_m - origin.x) + normal.y * (y_m - origin.y)) / normal.z
+        table::glass_m(&self.model, x_m, y_m)
     }
 }
 

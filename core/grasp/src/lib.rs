@@ -10,12 +10,14 @@ mod hands;
 mod held;
 mod knowledge;
 pub mod method;
-mod outline;
+pub mod outline;
 mod places;
 pub mod plan;
 pub mod published;
 pub mod record;
 pub mod see;
+pub mod stands;
+mod table;
 pub mod things;
 pub mod tracks;
 

@@ -9,18 +9,19 @@
 use std::f64::consts::TAU;
 
 use nalgebra::{Matrix2, Point3, Vector2, Vector3};
+use plumbline_effects::RobotModel;
 use plumbline_effects::robot_model::SeenUnder;
 use plumbline_model::robot::Posture;
 use plumbline_model::{Eye, Pixel, Point, Raw};
 
-use crate::knowledge::Knowledge;
+use crate::table::support_m;
 use crate::things::{Round, Thing};
 
 /// Points of an outline.
 const POINTS: usize = 24;
 /// Standard deviation of the middle of a box along rows and along columns, px: half of what its edges are
 /// off by.
-const BOX_SIGMA_PX: f64 = 0.7;
+pub(crate) const BOX_SIGMA_PX: f64 = 0.7;
 /// Standard deviation of the height at which a thing on the table is, m: the table may be tilted, the thing
 /// may lean.
 pub const HEIGHT_SIGMA_M: f64 = 0.002;
@@ -37,6 +38,8 @@ pub struct OnTable {
     pub xy_m: Vector2<f64>,
     /// Covariance by boxes and height, m².
     pub covariance_m2: Matrix2<f64>,
+    /// How far it moves where what it stands on is higher by [`HEIGHT_SIGMA_M`], m.
+    pub by_height_m: Vector2<f64>,
 }
 
 /// Boxes of a thing in both eyes, and the head as it was.
@@ -53,14 +56,14 @@ pub struct Boxes<'a> {
 impl Boxes<'_> {
     /// Where the thing stands, from a place nearby (x and y, m). `None`: no eye sees it, or there is no such
     /// place.
-    pub fn on_table(&self, knowledge: &Knowledge, thing: &Thing, near_m: Vector2<f64>) -> Option<OnTable> {
+    pub fn on_table(&self, model: &RobotModel, thing: &Thing, near_m: Vector2<f64>) -> Option<OnTable> {
         let mut xy_m = near_m;
         for _ in 0..TURNS {
-            let (normal, right) = self.normal(knowledge, thing, xy_m)?;
+            let (normal, right) = self.normal(model, thing, xy_m)?;
             let step = normal.try_inverse()? * right;
             xy_m += step;
             if step.norm() < STILL_M {
-                return self.found(knowledge, thing, xy_m, &normal);
+                return self.found(model, thing, xy_m, &normal);
             }
         }
         None
@@ -68,7 +71,7 @@ impl Boxes<'_> {
 
     fn found(
         &self,
-        knowledge: &Knowledge,
+        model: &RobotModel,
         thing: &Thing,
         xy_m: Vector2<f64>,
         normal: &Matrix2<f64>,
@@ -76,8 +79,8 @@ impl Boxes<'_> {
         let inverse = normal.try_inverse()?;
         // What a wrong height does.
         let (low, high) =
-            (self.residuals(knowledge, thing, xy_m, 0.0)?, self.residuals(knowledge, thing, xy_m, STEP_M)?);
-        let slopes = self.slopes(knowledge, thing, xy_m)?;
+            (self.residuals(model, thing, xy_m, 0.0)?, self.residuals(model, thing, xy_m, STEP_M)?);
+        let slopes = self.slopes(model, thing, xy_m)?;
         let by_height: Vector2<f64> = low
             .iter()
             .zip(&high)
@@ -86,19 +89,20 @@ impl Boxes<'_> {
                 Vector2::new(*x, *y) * ((high - low) / STEP_M / BOX_SIGMA_PX.powi(2))
             })
             .sum();
-        let shift = inverse * by_height * HEIGHT_SIGMA_M;
-        Some(OnTable { xy_m, covariance_m2: inverse + shift * shift.transpose() })
+        let by_height_m = inverse * by_height * HEIGHT_SIGMA_M;
+        let covariance_m2 = inverse + by_height_m * by_height_m.transpose();
+        Some(OnTable { xy_m, covariance_m2, by_height_m })
     }
 
     /// Normal equations at a place, weighted.
     fn normal(
         &self,
-        knowledge: &Knowledge,
+        model: &RobotModel,
         thing: &Thing,
         xy_m: Vector2<f64>,
     ) -> Option<(Matrix2<f64>, Vector2<f64>)> {
-        let residuals = self.residuals(knowledge, thing, xy_m, 0.0)?;
-        let slopes = self.slopes(knowledge, thing, xy_m)?;
+        let residuals = self.residuals(model, thing, xy_m, 0.0)?;
+        let slopes = self.slopes(model, thing, xy_m)?;
         let weight = BOX_SIGMA_PX.powi(-2);
         let (mut normal, mut right) = (Matrix2::zeros(), Vector2::zeros());
         for (residual, [x, y]) in residuals.iter().zip(&slopes) {
@@ -110,8 +114,8 @@ impl Boxes<'_> {
     }
 
     /// How each predicted number changes with x and with y, px/m.
-    fn slopes(&self, knowledge: &Knowledge, thing: &Thing, xy_m: Vector2<f64>) -> Option<Vec<[f64; 2]>> {
-        let at = |step: Vector2<f64>| self.residuals(knowledge, thing, xy_m + step, 0.0);
+    fn slopes(&self, model: &RobotModel, thing: &Thing, xy_m: Vector2<f64>) -> Option<Vec<[f64; 2]>> {
+        let at = |step: Vector2<f64>| self.residuals(model, thing, xy_m + step, 0.0);
         let (x0, x1) = (at(Vector2::new(-STEP_M, 0.0))?, at(Vector2::new(STEP_M, 0.0))?);
         let (y0, y1) = (at(Vector2::new(0.0, -STEP_M))?, at(Vector2::new(0.0, STEP_M))?);
         let slope = |low: f64, high: f64| (low - high) / (2.0 * STEP_M);
@@ -121,14 +125,14 @@ impl Boxes<'_> {
     /// Middles of the boxes less those of the outlines of a thing that stands there, px.
     fn residuals(
         &self,
-        knowledge: &Knowledge,
+        model: &RobotModel,
         thing: &Thing,
         xy_m: Vector2<f64>,
         higher_m: f64,
     ) -> Option<Vec<f64>> {
-        let stands_on_m = knowledge.support_m(xy_m.x, xy_m.y) + higher_m;
-        let robot_from_left = knowledge.robot_from_left(self.posture).isometry;
-        let right_from_left = knowledge.calibration.cameras.right_from_left.isometry;
+        let stands_on_m = support_m(model, xy_m.x, xy_m.y) + higher_m;
+        let robot_from_left = model.robot_from_left(self.posture).isometry;
+        let right_from_left = model.rig().eyes.cameras.right_from_left.isometry;
         let mut residuals = vec![];
         for eye in Eye::BOTH {
             let Some(seen_px) = self.boxes_px[eye.index()] else { continue };
@@ -140,7 +144,7 @@ impl Boxes<'_> {
             for round in thing.rounds {
                 for point in outline(round, &Point3::new(xy_m.x, xy_m.y, stands_on_m), &eye_at)? {
                     let point = Point::new(point.x, point.y, point.z);
-                    let (left, right) = knowledge.model.project(&point, self.posture, &self.under)?;
+                    let (left, right) = model.project(&point, self.posture, &self.under)?;
                     let Pixel::<Raw> { u_px, v_px, .. } = if eye == Eye::Left { left } else { right };
                     for (k, at_px) in [u_px, v_px].into_iter().enumerate() {
                         (low[k], high[k]) = (low[k].min(at_px), high[k].max(at_px));
@@ -179,91 +183,79 @@ fn outline(round: &Round, stands: &Point3<f64>, eye: &Point3<f64>) -> Option<Vec
     Some((0..POINTS).map(point).collect())
 }
 
+/// Boxes around a thing that stands at a place, with the head at home.
+#[cfg(test)]
+pub(crate) fn boxes_around(model: &RobotModel, thing: &Thing, xy_m: Vector2<f64>) -> [Option<[f32; 4]>; 2] {
+    let posture = model.rig().home();
+    let empty =
+        Boxes { boxes_px: &[Some([0.0; 4]), Some([0.0; 4])], posture: &posture, under: SeenUnder::default() };
+    // What is left of a box around the origin is the middle of the outline, and its corner.
+    let middles = empty.residuals(model, thing, xy_m, 0.0).expect("seen");
+    let around = |u: f64, v: f64| {
+        let (u, v) = (-u, -v);
+        Some([u - 12.0, v - 11.0, u + 12.0, v + 11.0].map(|at| at as f32))
+    };
+    [around(middles[0], middles[1]), around(middles[2], middles[3])]
+}
+
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
-    use plumbline_effects::RobotModel;
-    use plumbline_model::StereoCalibration;
-    use plumbline_model::robot::Rig;
+    use plumbline_model::robot::default_rig;
 
     use super::*;
-    use crate::knowledge::Corrections;
 
-    fn knowledge() -> Knowledge {
-        let rig = Arc::new(Rig::built_in("nico").expect("valid"));
-        Knowledge {
-            model: RobotModel::nominal(rig.clone()),
-            described: rig.clone(),
-            calibration: Arc::new(StereoCalibration::bare(rig.eyes.cameras)),
-            corrections: Corrections::default(),
-        }
-    }
-
-    fn boxes_of(knowledge: &Knowledge, thing: &Thing, xy_m: Vector2<f64>) -> [Option<[f32; 4]>; 2] {
-        let posture = knowledge.described.home();
-        let empty = Boxes {
-            boxes_px: &[Some([0.0; 4]), Some([0.0; 4])],
-            posture: &posture,
-            under: SeenUnder::default(),
-        };
-        // What is left of a box around the origin is the middle of the outline, and its corner.
-        let middles = empty.residuals(knowledge, thing, xy_m, 0.0).expect("seen");
-        let around = |u: f64, v: f64| {
-            let (u, v) = (-u, -v);
-            Some([u - 12.0, v - 11.0, u + 12.0, v + 11.0].map(|at| at as f32))
-        };
-        [around(middles[0], middles[1]), around(middles[2], middles[3])]
+    fn model() -> RobotModel {
+        RobotModel::nominal(default_rig())
     }
 
     #[test]
     fn a_thing_is_found_where_its_outline_is_seen_with_both_eyes_and_with_one() {
-        let knowledge = knowledge();
-        let posture = knowledge.described.home();
+        let model = model();
+        let posture = model.rig().home();
         let tomato = Thing::of_class("Tomato").expect("known");
         for (at_m, thing) in crate::PLACES_M.into_iter().zip(Thing::held().cycle()) {
             let truly = Vector2::from(at_m);
-            let both = boxes_of(&knowledge, &thing, truly);
+            let both = boxes_around(&model, &thing, truly);
             let off = Vector2::new(0.02, -0.015);
             for seen in [both, [both[0], None], [None, both[1]]] {
                 let boxes = Boxes { boxes_px: &seen, posture: &posture, under: SeenUnder::default() };
-                let found = boxes.on_table(&knowledge, &thing, truly + off).expect("found");
+                let found = boxes.on_table(&model, &thing, truly + off).expect("found");
                 assert!((found.xy_m - truly).norm() < 1e-4, "{thing:?} at {at_m:?}: {found:?}");
                 let sigma_m = found.covariance_m2.trace().sqrt();
                 assert!((0.001..0.02).contains(&sigma_m), "{at_m:?}: {sigma_m}");
             }
         }
         let unseen = Boxes { boxes_px: &[None, None], posture: &posture, under: SeenUnder::default() };
-        assert_eq!(unseen.on_table(&knowledge, &tomato, Vector2::new(0.3, 0.0)), None);
+        assert_eq!(unseen.on_table(&model, &tomato, Vector2::new(0.3, 0.0)), None);
     }
 
     #[test]
     fn a_mushroom_is_seen_by_its_cap() {
-        let knowledge = knowledge();
-        let posture = knowledge.described.home();
+        let model = model();
+        let posture = model.rig().home();
         let mushroom = Thing::of_class("Mushroom").expect("known");
         let truly = Vector2::new(0.3, 0.1);
-        let seen = boxes_of(&knowledge, &mushroom, truly);
+        let seen = boxes_around(&model, &mushroom, truly);
         let boxes = Boxes { boxes_px: &seen, posture: &posture, under: SeenUnder::default() };
         // Taken for one ellipsoid of its height it would stand farther from the eyes.
         const ONE: [Round; 1] = [Round { width_m: 0.044, from_m: 0.0, to_m: 0.040 }];
         let one = Thing { rounds: &ONE, ..mushroom };
-        let taken = boxes.on_table(&knowledge, &one, truly).expect("found");
+        let taken = boxes.on_table(&model, &one, truly).expect("found");
         assert!(taken.xy_m.norm() - truly.norm() > 0.005, "{taken:?}");
     }
 
     #[test]
     fn a_box_that_is_off_by_a_pixel_moves_it_by_about_what_is_stated() {
-        let knowledge = knowledge();
-        let posture = knowledge.described.home();
+        let model = model();
+        let posture = model.rig().home();
         let tomato = Thing::of_class("Tomato").expect("known");
         let truly = Vector2::new(0.3, 0.1);
-        let mut seen = boxes_of(&knowledge, &tomato, truly);
+        let mut seen = boxes_around(&model, &tomato, truly);
         for area in seen.iter_mut().flatten() {
             *area = area.map(|at| at + BOX_SIGMA_PX as f32);
         }
         let boxes = Boxes { boxes_px: &seen, posture: &posture, under: SeenUnder::default() };
-        let found = boxes.on_table(&knowledge, &tomato, truly).expect("found");
+        let found = boxes.on_table(&model, &tomato, truly).expect("found");
         let off_m = (found.xy_m - truly).norm();
         let sigma_m = found.covariance_m2.trace().sqrt();
         assert!(off_m > 0.0005 && off_m < 3.0 * sigma_m, "{off_m} m, stated {sigma_m} m");

@@ -89,7 +89,7 @@ fn things(view: &View) -> Vec<SceneThing> {
 }
 
 fn place_m(object: &ObjectView) -> Option<Point3<f64>> {
-    object.place.as_ref().ok().map(|place| place.point_in_robot.coords)
+    object.best_place().ok().map(|place| place.point_in_robot.coords)
 }
 
 /// The thing in or beside whose circle the pointer is; of several the one whose middle is nearest to it. What is

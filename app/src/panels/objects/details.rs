@@ -27,7 +27,7 @@ pub fn show(ui: &mut Ui, view: &View, panels: &mut ObjectsPanels) {
         return;
     };
     ui.add_space(space::XS);
-    match &object.place {
+    match object.best_place() {
         Ok(place) => placed(ui, object, place),
         Err(why) => {
             ui.label(
@@ -65,6 +65,7 @@ fn placed(ui: &mut Ui, object: &ObjectView, place: &ObjectPlaceView) {
     if let Some(why) = place.wide_because {
         warning(ui, why);
     }
+    ui.label(theme::weak(ui, place_from(object)));
     let voted = object.voted.iter().map(|cell| cell.area_px2()).sum::<f32>();
     let share = object.left.as_ref().map(|seen| f64::from(voted / seen.area.area_px2().max(1.0)));
     key_value_grid(
@@ -77,4 +78,16 @@ fn placed(ui: &mut Ui, object: &ObjectView, place: &ObjectPlaceView) {
                 .help("Share of its box in the left eye whose pixels decided the distance; they are colored in the picture"),
         ],
     );
+}
+
+/// What its place rests on.
+fn place_from(object: &ObjectView) -> String {
+    let (Some(stands), Ok(seen)) = (&object.stands, &object.place) else {
+        return "By its pixels and boxes in both eyes.".to_owned();
+    };
+    let apart_m = stands.point_in_robot.distance_m(&seen.point_in_robot);
+    format!(
+        "By its outline, standing on the table. Its pixels in both eyes alone say {} beside.",
+        format::mm_with(apart_m, seen.range_sigma_m)
+    )
 }

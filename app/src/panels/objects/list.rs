@@ -85,7 +85,7 @@ fn confidences(object: &ObjectView) -> String {
 
 /// Where it is, on one line.
 fn whereabouts(object: &ObjectView) -> String {
-    match &object.place {
+    match object.best_place() {
         Ok(place) => {
             let at = place.point_in_robot.coords;
             let number = |m: f64| format::fixed(Quantity::Length.on_screen(m), 0);

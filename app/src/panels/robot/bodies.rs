@@ -86,7 +86,7 @@ fn objects(scene: &mut Scene, view: &View, names: bool) {
     }
     let objects = view.detect.found.iter().flat_map(|found| &found.objects);
     for object in objects {
-        let Ok(place) = &object.place else { continue };
+        let Ok(place) = object.best_place() else { continue };
         let at_m = steadied_m(&place.point_in_robot.coords);
         let tint = Tint::Object(plumbline_widgets::class_color(&object.name, object.class.0));
         if let Some((radii_m, turn)) = two_sigma(&place.covariance_m2) {

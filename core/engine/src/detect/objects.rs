@@ -3,6 +3,10 @@
 use std::panic::AssertUnwindSafe;
 use std::sync::Arc;
 
+use plumbline_effects::PlaceInRobot;
+use plumbline_grasp::outline::Boxes;
+use plumbline_grasp::stands;
+use plumbline_grasp::things::Thing;
 use plumbline_model::detection::{ClassIndex, ClassNames, Detection, PixelBox};
 use plumbline_model::{AimedPair, Eye, Pixel, Raw, Rectified, StereoCalibration, StereoFrame};
 use plumbline_vision::detect_places::{ObjectPlace, Place, PlaceFinder, PlaceOptions, RangeFrom, Seen};
@@ -10,7 +14,7 @@ use plumbline_vision::detect_places::{ObjectPlace, Place, PlaceFinder, PlaceOpti
 use super::view::{NoObjectPlace, ObjectPlaceView, ObjectView, SeenBox};
 use crate::ground::jobs::panic_message;
 use crate::ground::text::sentence;
-use crate::live::{LiveSetup, NoPlace, NoSetup, fitting};
+use crate::live::{LiveSetup, NoSetup, fitting};
 
 /// Points along each edge of a box that are taken over to the rectified image: straight edges are
 /// bent by the lens.
@@ -132,30 +136,52 @@ fn object_view(
     // Without a setup that is why, whatever the boxes say.
     let alone_because = setup.err().map(ToString::to_string).or(alone_because);
     let place = object.place.as_ref();
-    let in_robot = match (place, setup) {
+    let found = match (place, setup) {
         (_, Err(why)) => Err(why.clone()),
         (Err(why), _) => Err((*why).into()),
-        (Ok(place), Ok(setup)) => place_view(place, setup).map_err(NoObjectPlace::from),
+        (Ok(place), Ok(setup)) => {
+            let middle = &place.middle;
+            let found = setup.place(&middle.point, &middle.covariance_m2).map_err(NoObjectPlace::from);
+            found.map(|found| (found, &**setup))
+        }
     };
+    let name = class_name(names, object.class);
+    let stands = found.as_ref().ok().and_then(|(found, setup)| stands(found, setup, &name, [&left, &right]));
     ObjectView {
         class: object.class,
-        name: class_name(names, object.class),
+        name,
         left,
         right,
         epipolar_px,
         alone_because,
-        place: in_robot,
+        place: found.map(|(found, setup)| place_view(&found, setup)),
+        stands,
         voted: place.map(|place| place.votes.cells().collect()).unwrap_or_default(),
         leak: place.ok().and_then(leak),
         doubts: doubts(object, names),
     }
 }
 
+/// Where it stands on the table, if its shape is known.
+fn stands(
+    found: &PlaceInRobot,
+    setup: &LiveSetup,
+    name: &str,
+    seen: [&Option<SeenBox>; 2],
+) -> Option<ObjectPlaceView> {
+    let boxes_px = seen.map(|seen| {
+        let PixelBox { x0_px, y0_px, x1_px, y1_px } = seen.as_ref()?.area;
+        Some([x0_px, y0_px, x1_px, y1_px])
+    });
+    let boxes = Boxes { boxes_px: &boxes_px, posture: &setup.posture, under: setup.seen_under() };
+    let stands = stands::place(&setup.model, &Thing::of_class(name)?, &boxes, found)?;
+    Some(place_view(&stands, setup))
+}
+
 /// Where the middle of an object is by the model in use.
-fn place_view(place: &Place, setup: &LiveSetup) -> Result<ObjectPlaceView, NoPlace> {
-    let found = setup.place(&place.middle.point, &place.middle.covariance_m2)?;
+fn place_view(found: &PlaceInRobot, setup: &LiveSetup) -> ObjectPlaceView {
     let (range_m, range_sigma_m) = found.range_m(&setup.robot_from_left().translation_m());
-    Ok(ObjectPlaceView {
+    ObjectPlaceView {
         point_in_robot: found.point,
         sigma_m: [0, 1, 2].map(|i| found.covariance_m2[(i, i)].max(0.0).sqrt()),
         wide_because: setup.wide_because(),
@@ -163,7 +189,7 @@ fn place_view(place: &Place, setup: &LiveSetup) -> Result<ObjectPlaceView, NoPla
         range_m,
         range_sigma_m,
         model: setup.title.clone(),
-    })
+    }
 }
 
 /// What lies behind and was kept out.

@@ -219,8 +219,11 @@ pub struct ObjectView {
     pub epipolar_px: Option<f64>,
     /// Why the other eye has no box for it, a sentence.
     pub alone_because: Option<String>,
-    /// Where it is, or why that is not known.
+    /// Where both eyes see it, or why that is not known.
     pub place: Result<ObjectPlaceView, NoObjectPlace>,
+    /// Where it stands, by its known shape and the height of the table; `None`: its shape or that height is not
+    /// known, or it does not seem to stand there.
+    pub stands: Option<ObjectPlaceView>,
     /// Parts of the raw left image whose pixels decided its distance.
     pub voted: Arc<[PixelBox]>,
     /// What lies behind it would have got into its distance: a sentence.
@@ -237,6 +240,14 @@ impl ObjectView {
             Eye::Left => self.left.as_ref(),
             Eye::Right => self.right.as_ref(),
         }
+    }
+
+    /// Where it is, as well as that is known: where it stands, else where both eyes see it.
+    ///
+    /// # Errors
+    /// Why neither is known.
+    pub fn best_place(&self) -> Result<&ObjectPlaceView, &NoObjectPlace> {
+        self.stands.as_ref().map_or(self.place.as_ref(), Ok)
     }
 
     /// Whether both eyes see it.

@@ -25,7 +25,7 @@ fn nearest(objects: &[ObjectView], eye: Eye, at_px: [f64; 2]) -> Option<GraspTar
     let candidates = objects.iter().filter(|object| held(&object.name));
     let near = candidates.filter_map(|object| Some((off_px(&object.seen(eye)?.area), object)));
     let (_, object) = near.filter(|(off, _)| *off < NEAR_BOX_PX).min_by(|a, b| a.0.total_cmp(&b.0))?;
-    let near_m = object.place.as_ref().ok().map(|place| {
+    let near_m = object.best_place().ok().map(|place| {
         let point = place.point_in_robot.coords;
         [point.x, point.y]
     });
@@ -69,6 +69,7 @@ mod tests {
                 range_sigma_m: 0.003,
                 model: "as described".into(),
             }),
+            stands: None,
             voted: [].into(),
             leak: None,
             doubts: vec![],

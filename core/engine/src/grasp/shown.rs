@@ -57,7 +57,7 @@ impl GraspWorkflow {
             let class = self.target.class.as_ref()?;
             let of_class =
                 around.found.as_ref()?.objects.iter().filter(|seen| seen.name.eq_ignore_ascii_case(class));
-            let placed = of_class.filter_map(|seen| seen.place.as_ref().ok());
+            let placed = of_class.filter_map(|seen| seen.best_place().ok());
             nearest_m(placed.map(|place| [place.point_in_robot.coords.x, place.point_in_robot.coords.y]))
         };
         self.plan.as_ref().map(|plan| plan.at_m).or(self.target.near_m).or_else(seen)

@@ -48,9 +48,13 @@ impl LiveSetup {
         in_left: &Point<LeftCamera>,
         covariance_m2: &Matrix3<f64>,
     ) -> Result<PlaceInRobot, NoPlace> {
-        let seen = SeenUnder { t_secs: self.eyes_on_s, ..SeenUnder::default() };
-        let place = self.model.place(in_left, covariance_m2, &self.posture, &seen);
+        let place = self.model.place(in_left, covariance_m2, &self.posture, &self.seen_under());
         place.ok_or(NoPlace)
+    }
+
+    /// What the effects of the eyes depend on besides the posture.
+    pub fn seen_under(&self) -> SeenUnder {
+        SeenUnder { t_secs: self.eyes_on_s, ..SeenUnder::default() }
     }
 
     /// Why the uncertainty of places is wide, or what it leaves out, and what to do; `None`: all that they rest on was

@@ -228,7 +228,7 @@ impl Neighbors<TruthWorkflow> for State {
         let robot = &self.robot;
         let found = self.rooms.detect.found().filter(|_| self.shown == World::Twin && self.shows_own_eyes());
         let seen = found.iter().flat_map(|found| &found.objects).filter_map(|object| {
-            let place = object.place.as_ref().ok()?;
+            let place = object.best_place().ok()?;
             Some(Seen { name: object.name.clone(), place: place.point_in_robot })
         });
         TruthAround {

@@ -11,11 +11,9 @@ use crate::outline::{Boxes, HEIGHT_SIGMA_M};
 use crate::plan::{Beside, Standing};
 use crate::record::{Failure, Step};
 use crate::see::{Seen, SeenPlace};
+use crate::stands;
 use crate::things::Thing;
 
-/// A thing whose middle seems to be this far from where the table says is somewhere else, m, beside
-/// three standard deviations.
-const NOT_ON_TABLE_M: f64 = 0.03;
 /// Farther from the place that was pointed at it is not what was meant, m.
 const NEAR_M: f64 = 0.12;
 /// What seems to stand so near to the thing that is grasped is that thing, m.
@@ -87,7 +85,7 @@ impl Running<'_> {
             )));
         }
         if self.order.method == Method::M5
-            && let Some(found) = boxes.on_table(knowledge, thing, point.xy())
+            && let Some(found) = boxes.on_table(&knowledge.model, thing, point.xy())
         {
             let support_m = knowledge.support_m(found.xy_m.x, found.xy_m.y);
             point = Vector3::new(found.xy_m.x, found.xy_m.y, support_m + 0.5 * thing.height_m);
@@ -105,14 +103,10 @@ impl Running<'_> {
     }
 }
 
-/// How far over the table a thing seems to be that does not stand on it (under it: negative), m; `None`: it
-/// seems to stand there. The mount of the eyes is left out of how sure that is: it moves all that is seen alike, and how
-/// far mounts that nobody measured are usually off would let a thing in the air pass.
+/// How far over the table a thing seems to be that does not stand on it, see [`stands::over_table_m`].
 fn over_table_m(knowledge: &Knowledge, thing: &Thing, place: &SeenPlace) -> Option<f64> {
-    let [x_m, y_m, z_m] = place.point_m;
-    let off_m = z_m - knowledge.support_m(x_m, y_m) - 0.5 * thing.height_m;
-    let sigma_m = (place.covariance_m2 - place.by_mount_m2)[(2, 2)].max(0.0).sqrt();
-    (off_m.abs() > NOT_ON_TABLE_M + 3.0 * sigma_m).then_some(off_m)
+    let point_m = place.point().coords.coords;
+    stands::over_table_m(&knowledge.model, thing, &point_m, &(place.covariance_m2 - place.by_mount_m2))
 }
 
 /// What can be asked for instead of what nobody knows.

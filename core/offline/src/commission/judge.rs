@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use plumbline_correction::train::FEWEST_FOR_A_NETWORK;
 use plumbline_correction::{CorrectionModel, Method};
+use plumbline_effects::PlaceInRobot;
 use plumbline_effects::rig_model::Conditions;
 use plumbline_engine::models::learn::{learn, options};
 use plumbline_engine::models::losses::Losses;
@@ -46,6 +47,8 @@ pub(super) struct Judged {
     error_m: nalgebra::Vector3<f64>,
     /// As stated with the place.
     covariance_m2: nalgebra::Matrix3<f64>,
+    /// Where both eyes saw it, less where it was; robot frame, m.
+    by_eyes_m: nalgebra::Vector3<f64>,
 }
 
 impl Judged {
@@ -91,8 +94,13 @@ pub(super) fn places(
         let truth = robot.lockstep().truth_for_judging();
         let stands = truth.toys.iter().find_map(|(toy, place)| place.filter(|_| *toy == Toy::Tomato));
         if let (Some(found), Some(stands)) = (found, stands) {
-            let error_m = found.point.coords.coords - stands.translation.vector;
-            judged.push(Judged { at_m: [*x_m, *y_m], error_m, covariance_m2: found.covariance_m2 });
+            let off_m = |place: &PlaceInRobot| place.point.coords.coords - stands.translation.vector;
+            judged.push(Judged {
+                at_m: [*x_m, *y_m],
+                error_m: off_m(&found.place),
+                covariance_m2: found.place.covariance_m2,
+                by_eyes_m: off_m(&found.by_eyes),
+            });
         }
     }
     robot.lockstep().remove_toy(Toy::Tomato);
@@ -100,6 +108,7 @@ pub(super) fn places(
     let mm =
         |of: fn(&nalgebra::Vector3<f64>) -> f64| -> Vec<f64> { errors.iter().map(|e| 1e3 * of(e)).collect() };
     let (space, plane) = (mm(|e| e.norm()), mm(|e| e.xy().norm()));
+    let by_eyes: Vec<f64> = judged.iter().map(|judged| judged.by_eyes_m.norm() * 1e3).collect();
     let mean = errors.iter().sum::<nalgebra::Vector3<f64>>() / errors.len().max(1) as f64 * 1e3;
     let in_sigmas: Vec<f64> = judged.iter().flat_map(Judged::in_sigmas).collect();
     let sigma = |k: usize| judged.iter().map(|j| 1e3 * j.covariance_m2[(k, k)].sqrt()).sum::<f64>();
@@ -107,6 +116,7 @@ pub(super) fn places(
     let error = PlaceError {
         median: quantile(&space, 0.5),
         p95: quantile(&space, 0.95),
+        by_eyes: [quantile(&by_eyes, 0.5), quantile(&by_eyes, 0.95)],
         plane_median: quantile(&plane, 0.5),
         plane_p95: quantile(&plane, 0.95),
         mean: (!errors.is_empty()).then(|| mean.into()),

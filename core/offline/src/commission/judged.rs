@@ -9,6 +9,9 @@ pub struct PlaceError {
     pub median: Option<f64>,
     /// 95 % of them lie below.
     pub p95: Option<f64>,
+    /// Median and 95 % of where both eyes see it by themselves, without its shape and the height of the table.
+    #[serde(default)]
+    pub by_eyes: [Option<f64>; 2],
     /// Median of the distance along the table.
     pub plane_median: Option<f64>,
     /// 95 % of those lie below.

@@ -1,12 +1,24 @@
 //! Finds an object on the table with the eyes as they are calibrated and the model in use.
 
 use plumbline_effects::{PlaceInRobot, RobotModel, SeenUnder};
-use plumbline_model::{Detection, StereoCalibration};
+use plumbline_grasp::outline::Boxes;
+use plumbline_grasp::stands;
+use plumbline_grasp::things::Thing;
+use plumbline_model::detection::PixelBox;
+use plumbline_model::{Detection, Eye, StereoCalibration};
 use plumbline_vision::detect::{DetectSettings, DetectorOptions, EyesDetector, Part, shipped_detector};
 use plumbline_vision::detect_places::{ObjectPlace, PlaceFinder, PlaceOptions};
 
 use super::error::CommissionError;
 use super::robot::{Robot, Sight};
+
+/// Where an object is.
+pub(super) struct Found {
+    /// As it counts: where it stands, by its shape and the height of the table, else where both eyes see it.
+    pub place: PlaceInRobot,
+    /// Where both eyes see it.
+    pub by_eyes: PlaceInRobot,
+}
 
 /// The detector that comes with the program, and places by what was commissioned.
 pub(super) struct Seer {
@@ -26,22 +38,18 @@ impl Seer {
     }
 
     /// Looks for an object from home, then straight at where it was found, and again. The head stays there.
-    pub fn look_for(
-        &mut self,
-        robot: &mut Robot,
-        class: &str,
-    ) -> Result<Option<PlaceInRobot>, CommissionError> {
+    pub fn look_for(&mut self, robot: &mut Robot, class: &str) -> Result<Option<Found>, CommissionError> {
         let home = self.model.rig().home();
         robot.go(&home);
         let Some(first) = self.find(robot, class)? else { return Ok(None) };
-        let (pan_rad, tilt_rad) = self.model.look_at(first.point, &home);
+        let (pan_rad, tilt_rad) = self.model.look_at(first.place.point, &home);
         let eyes = &self.model.rig().eyes;
         robot.go(&home.with(&[eyes.pan, eyes.tilt], &[pan_rad, tilt_rad]));
         Ok(self.find(robot, class)?.or(Some(first)))
     }
 
     /// The middle of the surest object of a class, by name; `None` where none was found by both eyes.
-    fn find(&mut self, robot: &mut Robot, class: &str) -> Result<Option<PlaceInRobot>, CommissionError> {
+    fn find(&mut self, robot: &mut Robot, class: &str) -> Result<Option<Found>, CommissionError> {
         let sight: Sight = robot.look()?;
         let seen = SeenUnder { t_secs: Some(robot.on_s()), background_m: None };
         let wanted = self.detector.info().names.index_of(class);
@@ -52,11 +60,20 @@ impl Seer {
         let mut found: Vec<ObjectPlace> = vec![];
         self.finder.find((&sight.left, &left), (&sight.right, &right), &mut found);
         let of_class = found.iter().filter(|object| Some(object.class) == wanted);
-        let placed = of_class.filter_map(|object| Some((object.confidence, object.place.as_ref().ok()?)));
-        let surest = placed.max_by(|a, b| a.0.total_cmp(&b.0));
-        Ok(surest.and_then(|(_, place)| {
+        let placed = of_class.filter_map(|object| Some((object, object.place.as_ref().ok()?)));
+        let surest = placed.max_by(|a, b| a.0.confidence.total_cmp(&b.0.confidence));
+        Ok(surest.and_then(|(object, place)| {
             let middle = &place.middle;
-            self.model.place(&middle.point, &middle.covariance_m2, &sight.posture, &seen)
+            let by_eyes = self.model.place(&middle.point, &middle.covariance_m2, &sight.posture, &seen)?;
+            let area = |eye: Eye, boxes: &[Detection]| {
+                let PixelBox { x0_px, y0_px, x1_px, y1_px } = boxes.get(object.seen.index(eye)?)?.area;
+                Some([x0_px, y0_px, x1_px, y1_px])
+            };
+            let boxes_px = [area(Eye::Left, &left), area(Eye::Right, &right)];
+            let boxes = Boxes { boxes_px: &boxes_px, posture: &sight.posture, under: seen };
+            let thing = Thing::of_class(class);
+            let stands = thing.and_then(|thing| stands::place(&self.model, &thing, &boxes, &by_eyes));
+            Some(Found { place: stands.unwrap_or(by_eyes), by_eyes })
         }))
     }
 }

@@ -1,0 +1,82 @@
+//! Where a thing of known shape is that stands on the table.
+//!
+//! Two eyes that are 7 cm apart tell the distance of a thing half a meter away to a few millimeters only, and what
+//! is matched on it lies somewhere on its relief. Where it stands on the table, its outline and the height of the
+//! table say more: what is left of the eyes' errors is what they do across the line of sight.
+
+use nalgebra::{Matrix3, Vector3};
+use plumbline_effects::{PlaceInRobot, RobotModel};
+use plumbline_model::Point;
+
+use crate::outline::{Boxes, HEIGHT_SIGMA_M, OnTable};
+use crate::table::support_m;
+use crate::things::Thing;
+
+/// A thing whose middle seems to be this far from where the table says is somewhere else, m, beside
+/// three standard deviations.
+const NOT_ON_TABLE_M: f64 = 0.03;
+/// A line of sight that comes in flatter than this (sine of the angle with the table) says nothing of where it
+/// meets the table.
+const FLATTEST: f64 = 0.1;
+
+/// The place of a thing that seems to stand on the table, by the boxes around its outline and the height of the
+/// table, where both eyes see it at `seen`. `None`: the height of the table was not measured, the thing does not seem
+/// to stand on it, or its boxes fit no place there.
+pub fn place(
+    model: &RobotModel,
+    thing: &Thing,
+    boxes: &Boxes<'_>,
+    seen: &PlaceInRobot,
+) -> Option<PlaceInRobot> {
+    model.glass_over_table_m()?;
+    let seen_m = seen.point.coords.coords;
+    if over_table_m(model, thing, &seen_m, &(seen.covariance_m2 - seen.by_mount_m2)).is_some() {
+        return None;
+    }
+    let found = boxes.on_table(model, thing, seen_m.xy())?;
+    let [x, y] = found.xy_m.into();
+    let point_m = Vector3::new(x, y, support_m(model, x, y) + 0.5 * thing.height_m);
+    let onto_table = onto_table(model, boxes, &point_m)?;
+    // The eyes' own share is that of what both see there, brought along the line of sight to the table: mount,
+    // lenses and effects move the rays, and where they meet does not matter any more.
+    let brought = |covariance_m2: &Matrix3<f64>| onto_table * covariance_m2 * onto_table.transpose();
+    let by_mount_m2 = brought(&seen.by_mount_m2);
+    let covariance_m2 = brought(&seen.covariance_m2) + of_outline(&found);
+    Some(PlaceInRobot { point: Point::new(point_m.x, point_m.y, point_m.z), covariance_m2, by_mount_m2 })
+}
+
+/// How far over the table a thing seems to be that does not stand on it (under it: negative), m; `None`: it
+/// seems to stand there. `covariance_m2` is that of its place without the mount of the eyes: it moves all that is seen
+/// alike, and how far mounts that nobody measured are usually off would let a thing in the air pass.
+pub fn over_table_m(
+    model: &RobotModel,
+    thing: &Thing,
+    point_m: &Vector3<f64>,
+    covariance_m2: &Matrix3<f64>,
+) -> Option<f64> {
+    let off_m = point_m.z - support_m(model, point_m.x, point_m.y) - 0.5 * thing.height_m;
+    let sigma_m = covariance_m2[(2, 2)].max(0.0).sqrt();
+    (off_m.abs() > NOT_ON_TABLE_M + 3.0 * sigma_m).then_some(off_m)
+}
+
+/// Moves a place along the line of sight until it is as high as it was meant to be. `None`: the line of sight is
+/// too flat.
+fn onto_table(model: &RobotModel, boxes: &Boxes<'_>, point_m: &Vector3<f64>) -> Option<Matrix3<f64>> {
+    let up = model.touchscreen().normal().vector();
+    let sight = (point_m - model.robot_from_left(boxes.posture).translation_m()).try_normalize(0.0)?;
+    let down = up.dot(&sight);
+    (down.abs() > FLATTEST).then(|| Matrix3::identity() - sight * up.transpose() / down)
+}
+
+/// Covariance by boxes and height with the height itself, m².
+fn of_outline(found: &OnTable) -> Matrix3<f64> {
+    let by_boxes = found.covariance_m2 - found.by_height_m * found.by_height_m.transpose();
+    let by_height = Vector3::new(found.by_height_m.x, found.by_height_m.y, HEIGHT_SIGMA_M);
+    let mut covariance_m2 = by_height * by_height.transpose();
+    let mut flat = covariance_m2.fixed_view_mut::<2, 2>(0, 0);
+    flat += by_boxes;
+    covariance_m2
+}
+
+#[cfg(test)]
+mod tests;

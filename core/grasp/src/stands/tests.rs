@@ -1,0 +1,123 @@
+use std::sync::Arc;
+
+use nalgebra::{Matrix3, Vector2, Vector3};
+use plumbline_effects::rig_model::{ModelEffect, PlacedScreen, RigModel};
+use plumbline_effects::robot_model::SeenUnder;
+use plumbline_effects::{Kind, PlaceInRobot, RobotModel};
+use plumbline_model::Point;
+use plumbline_model::robot::default_rig;
+use plumbline_vision::synthetic::Noise;
+
+use super::*;
+use crate::outline::{BOX_SIGMA_PX, boxes_around};
+
+/// A robot whose table was measured.
+fn model(over_table_m: Option<f64>) -> RobotModel {
+    let rig = default_rig();
+    let screen = rig.touchscreen.clone();
+    let mut added = RigModel::nominal(&rig);
+    let session = "touches".to_owned();
+    added.contents.screens.push(PlacedScreen { session, nominal: screen.clone(), screen, over_table_m });
+    // Zero does nothing; a model without any effect counts as that of the description.
+    added.contents.effects.push(ModelEffect {
+        id: Kind::EyeYaw.id().to_owned(),
+        site: "right".to_owned(),
+        title: String::new(),
+        tip: None,
+        shape: None,
+        reference_s: 0.0,
+        values: vec![0.0],
+        covariance: vec![],
+        probability: None,
+        parameters: vec![],
+    });
+    RobotModel::new(rig, Arc::new(added)).expect("it fits")
+}
+
+fn middle_m(model: &RobotModel, thing: &Thing, at_m: [f64; 2]) -> Vector3<f64> {
+    let [x, y] = at_m;
+    Vector3::new(x, y, support_m(model, x, y) + 0.5 * thing.height_m)
+}
+
+fn seen_at(point_m: Vector3<f64>, covariance_m2: Matrix3<f64>) -> PlaceInRobot {
+    let point = Point::new(point_m.x, point_m.y, point_m.z);
+    PlaceInRobot { point, covariance_m2, by_mount_m2: Matrix3::zeros() }
+}
+
+/// Along the line of sight of the left eye, of length 1.
+fn sight(model: &RobotModel, point_m: &Vector3<f64>) -> Vector3<f64> {
+    (point_m - model.robot_from_left(&model.rig().home()).translation_m()).normalize()
+}
+
+#[test]
+fn a_thing_that_is_seen_too_far_along_the_line_of_sight_is_where_it_stands() {
+    let model = model(Some(0.002));
+    let posture = model.rig().home();
+    for (at_m, thing) in crate::PLACES_M.into_iter().zip(Thing::held().cycle()) {
+        let truly_m = middle_m(&model, &thing, at_m);
+        let boxes_px = boxes_around(&model, &thing, Vector2::from(at_m));
+        let boxes = Boxes { boxes_px: &boxes_px, posture: &posture, under: SeenUnder::default() };
+        let along = sight(&model, &truly_m);
+        let covariance_m2 = along * along.transpose() * 0.01_f64.powi(2) + Matrix3::identity() * 1e-8;
+        for off_m in [-0.012, 0.012] {
+            let seen = seen_at(truly_m + along * off_m, covariance_m2);
+            let found = place(&model, &thing, &boxes, &seen).expect("it stands there");
+            let left_m = (found.point.coords.coords - truly_m).norm();
+            assert!(left_m < 2e-4, "{thing:?} at {at_m:?}: {left_m} m");
+            assert!(found.sigma_m() < 0.6 * seen.sigma_m(), "{} of {} m", found.sigma_m(), seen.sigma_m());
+        }
+    }
+}
+
+#[test]
+fn what_hangs_in_the_air_and_what_stands_on_a_table_that_nobody_measured_stays_where_it_is_seen() {
+    let measured = model(Some(0.002));
+    let posture = measured.rig().home();
+    let thing = Thing::of_class("Tomato").expect("known");
+    let boxes_px = boxes_around(&measured, &thing, Vector2::new(0.3, 0.1));
+    let boxes = Boxes { boxes_px: &boxes_px, posture: &posture, under: SeenUnder::default() };
+    let standing = seen_at(middle_m(&measured, &thing, [0.3, 0.1]), Matrix3::identity() * 4e-6);
+    assert!(place(&measured, &thing, &boxes, &standing).is_some());
+    assert_eq!(place(&model(None), &thing, &boxes, &standing), None);
+    let lifted = seen_at(standing.point.coords.coords + Vector3::z() * 0.06, standing.covariance_m2);
+    assert_eq!(place(&measured, &thing, &boxes, &lifted), None);
+    let nowhere = Boxes { boxes_px: &[None, None], ..boxes };
+    assert_eq!(place(&measured, &thing, &nowhere, &standing), None);
+}
+
+/// Boxes, heights and an eye that is turned are off as is stated: errors and statement agree.
+#[test]
+fn what_is_stated_holds_for_boxes_heights_and_rays_that_are_off_as_they_say() {
+    let model = model(Some(0.002));
+    let posture = model.rig().home();
+    let mut chi2 = vec![];
+    let mut noise = Noise::new(7);
+    for (at_m, thing) in crate::PLACES_M.into_iter().zip(Thing::held().cycle()).cycle().take(220) {
+        let truly_m = middle_m(&model, &thing, at_m);
+        let mut boxes_px = boxes_around(&model, &thing, Vector2::from(at_m));
+        for [x0, y0, x1, y1] in boxes_px.iter_mut().flatten() {
+            let [across, down] = [0; 2].map(|_| (BOX_SIGMA_PX * noise.normal()) as f32);
+            (*x0, *x1, *y0, *y1) = (*x0 + across, *x1 + across, *y0 + down, *y1 + down);
+        }
+        let boxes = Boxes { boxes_px: &boxes_px, posture: &posture, under: SeenUnder::default() };
+        let along = sight(&model, &truly_m);
+        let covariance_m2 = along * along.transpose() * 0.005_f64.powi(2);
+        let seen = seen_at(truly_m + along * (0.005 * noise.normal()), covariance_m2);
+        let found = place(&model, &thing, &boxes, &seen).expect("it stands there");
+        // The table is as high as is thought, so that the height is exact, and one number less is random.
+        let error_m = (found.point.coords.coords - truly_m).xy();
+        let by_boxes = boxes.on_table(&model, &thing, truly_m.xy()).expect("found");
+        let by_boxes_m2 = by_boxes.covariance_m2 - by_boxes.by_height_m * by_boxes.by_height_m.transpose();
+        chi2.push((error_m.transpose() * by_boxes_m2.try_inverse().expect("regular") * error_m).x);
+        for (stated_m2, by_boxes_m2) in
+            found.covariance_m2.diagonal().iter().zip(by_boxes.covariance_m2.diagonal().iter())
+        {
+            assert!(
+                *stated_m2 >= 0.999 * by_boxes_m2,
+                "less than its boxes say: {stated_m2} of {by_boxes_m2}"
+            );
+        }
+    }
+    let mean = chi2.iter().sum::<f64>() / chi2.len() as f64;
+    assert!((1.5..2.5).contains(&mean), "2 where it is honest: {mean}");
+}
