@@ -59,6 +59,12 @@ impl Thing {
         THINGS.into_iter().find(|thing| thing.class.eq_ignore_ascii_case(class))
     }
 
+    /// How far its upper end is over what a hand closes around, m: 0 but of what ends in a point.
+    pub fn peak_m(&self) -> f64 {
+        let top_m = self.rounds.iter().map(|round| round.to_m).fold(0.0, f64::max);
+        (top_m - self.height_m).max(0.0)
+    }
+
     /// All that can be held.
     pub fn held() -> impl Iterator<Item = Self> + Clone {
         THINGS.into_iter().filter(|thing| thing.can_be_held)

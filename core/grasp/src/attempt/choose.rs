@@ -98,7 +98,9 @@ impl Running<'_> {
         }
         let xy_m = [point.x, point.y];
         let support_m = knowledge.support_m(point.x, point.y);
-        let standing = Standing { xy_m, support_m, height_m: thing.height_m, lower_m: self.lower_m };
+        // What ends in a point is not pushed against the palm: it would tip over and drag the hand along.
+        let lower_m = self.lower_m - thing.peak_m();
+        let standing = Standing { xy_m, support_m, height_m: thing.height_m, lower_m };
         Ok(Chosen { point: Point::new(point.x, point.y, point.z), covariance_m2, standing })
     }
 }
