@@ -75,8 +75,9 @@ fn share_within(values: &[f64], bound: f64) -> Option<f64> {
     (!values.is_empty()).then(|| within as f64 / values.len() as f64)
 }
 
-/// Puts the tomato on the 36 places and compares where it is found with where it is.
+/// Puts a toy on the 36 places and compares where it is found with where it is.
 pub(super) fn places(
+    toy: Toy,
     lab: &Lab,
     robot: &mut Robot,
     context: &dyn JobContext,
@@ -87,12 +88,12 @@ pub(super) fn places(
     let all: Vec<(f64, f64)> = GRID_X_M.iter().flat_map(|x| GRID_Y_M.iter().map(move |y| (*x, *y))).collect();
     for (k, (x_m, y_m)) in all.iter().enumerate() {
         context.checkpoint()?;
-        context.report(0.5 * k as f64 / all.len() as f64, "judging where the tomato is found");
-        robot.lockstep().place_toy(Toy::Tomato, *x_m, *y_m)?;
+        context.report(0.5 * k as f64 / all.len() as f64, "judging where a toy is found");
+        robot.lockstep().place_toy(toy, *x_m, *y_m)?;
         robot.lockstep().wait(REST_S);
-        let found = seer.look_for(robot, "Tomato")?;
+        let found = seer.look_for(robot, toy.name())?;
         let truth = robot.lockstep().truth_for_judging();
-        let stands = truth.toys.iter().find_map(|(toy, place)| place.filter(|_| *toy == Toy::Tomato));
+        let stands = truth.toys.iter().find_map(|(which, place)| place.filter(|_| *which == toy));
         if let (Some(found), Some(stands)) = (found, stands) {
             let off_m = |place: &PlaceInRobot| place.point.coords.coords - stands.translation.vector;
             judged.push(Judged {
@@ -103,7 +104,7 @@ pub(super) fn places(
             });
         }
     }
-    robot.lockstep().remove_toy(Toy::Tomato);
+    robot.lockstep().remove_toy(toy);
     let errors: Vec<nalgebra::Vector3<f64>> = judged.iter().map(|judged| judged.error_m).collect();
     let mm =
         |of: fn(&nalgebra::Vector3<f64>) -> f64| -> Vec<f64> { errors.iter().map(|e| 1e3 * of(e)).collect() };

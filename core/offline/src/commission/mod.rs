@@ -38,7 +38,7 @@ use plumbline_grasp::Hand;
 use plumbline_model::JobContext;
 use plumbline_model::files::{self, Size};
 use plumbline_model::robot::Rig;
-use plumbline_twin::Scenario;
+use plumbline_twin::{Scenario, Toy};
 use plumbline_twin::eyes::EyeRenderer;
 use serde::Serialize;
 
@@ -164,7 +164,7 @@ fn one(
 
 fn check(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> Result<Step, CommissionError> {
     let mut step = Step::new("check", "new touches inside of the touched area, along the glass, rms");
-    let (places, found) = judge::places(lab, robot, context)?;
+    let (places, found) = judge::places(Toy::Tomato, lab, robot, context)?;
     let palm = judge::palm(Hand::Right, lab, robot, &found, context)?;
     if lab.rig.arm(Hand::Left.name()).is_some() {
         let left = judge::palm(Hand::Left, lab, robot, &found, context)?;

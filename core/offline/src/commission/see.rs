@@ -52,7 +52,8 @@ impl Seer {
     fn find(&mut self, robot: &mut Robot, class: &str) -> Result<Option<Found>, CommissionError> {
         let sight: Sight = robot.look()?;
         let seen = SeenUnder { t_secs: Some(robot.on_s()), background_m: None };
-        let wanted = self.detector.info().names.index_of(class);
+        let thing = Thing::of_class(class);
+        let wanted = self.detector.info().names.index_of(thing.map_or(class, |thing| thing.class));
         let settings = DetectSettings::default();
         let (mut left, mut right): (Vec<Detection>, Vec<Detection>) = (vec![], vec![]);
         let whole = [Part::Lit; 2];
@@ -71,7 +72,6 @@ impl Seer {
             };
             let boxes_px = [area(Eye::Left, &left), area(Eye::Right, &right)];
             let boxes = Boxes { boxes_px: &boxes_px, posture: &sight.posture, under: seen };
-            let thing = Thing::of_class(class);
             let stands = thing.and_then(|thing| stands::place(&self.model, &thing, &boxes, &by_eyes));
             Some(Found { place: stands.unwrap_or(by_eyes), by_eyes })
         }))

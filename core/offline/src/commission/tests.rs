@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 use plumbline_model::{Cancelled, JobContext, Unattended};
-use plumbline_twin::Scenario;
+use plumbline_twin::{Scenario, Toy};
 
 use super::*;
 
@@ -105,8 +105,8 @@ fn a_perfect_twin_is_commissioned_within_its_targets() {
     assert!(report.touch_error_mm.inside.expect("judged") <= 3.0, "{report:#?}");
 }
 
-/// How the tomato is found on the 36 places in the lab commissioned in `PLUMBLINE_LAB` (of the twin
-/// `PLUMBLINE_TWIN`), and how well what is stated fits.
+/// How a toy (`PLUMBLINE_TOY`, else the tomato) is found on the 36 places in the lab commissioned in `PLUMBLINE_LAB`
+/// (of the twin `PLUMBLINE_TWIN`), and how well what is stated fits.
 #[test]
 #[ignore = "a minute; figures for who works on places"]
 fn places_in_a_lab() {
@@ -116,6 +116,8 @@ fn places_in_a_lab() {
     let lab = Lab { folder, rig, scenario: scenario(&twin).expect("a twin"), seed: 1 };
     let steps = Steps::read(&lab.folder, &lab.scenario, lab.seed).expect("commissioned");
     let mut robot = Robot::new(&lab, steps.elapsed_s(), None).expect("a twin");
-    let (error, _) = judge::places(&lab, &mut robot, &Unattended).expect("judged");
+    let class = std::env::var("PLUMBLINE_TOY").unwrap_or_else(|_| "tomato".to_owned());
+    let toy = Toy::from_name(&class).expect("a toy");
+    let (error, _) = judge::places(toy, &lab, &mut robot, &Unattended).expect("judged");
     println!("{}", serde_json::to_string(&error).expect("text"));
 }
