@@ -6,7 +6,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 use plumbline_effects::{PlaceInRobot, RobotModel};
-use plumbline_model::Point;
+use plumbline_model::{LeftCamera, Point};
 
 use crate::outline::{Boxes, HEIGHT_SIGMA_M, OnTable};
 use crate::table::support_m;
@@ -20,15 +20,17 @@ const NOT_ON_TABLE_M: f64 = 0.03;
 const FLATTEST: f64 = 0.1;
 
 /// The place of a thing that seems to stand on the table, by the boxes around its outline and the height of the
-/// table, where both eyes see it at `seen`. `None`: the height of the table was not measured, the thing does not seem
-/// to stand on it, or its boxes fit no place there.
+/// table; both eyes put it at `in_left` (left camera, m; covariance in its axes, m²). `None`: the height of the table was
+/// not measured, the thing does not seem to stand on it, or its boxes fit no place there.
 pub fn place(
     model: &RobotModel,
     thing: &Thing,
     boxes: &Boxes<'_>,
-    seen: &PlaceInRobot,
+    in_left: &Point<LeftCamera>,
+    covariance_m2: &Matrix3<f64>,
 ) -> Option<PlaceInRobot> {
     model.glass_over_table_m()?;
+    let seen = model.place(in_left, covariance_m2, boxes.posture, &boxes.under)?;
     let seen_m = seen.point.coords.coords;
     if over_table_m(model, thing, &seen_m, &(seen.covariance_m2 - seen.by_mount_m2)).is_some() {
         return None;
@@ -37,11 +39,12 @@ pub fn place(
     let [x, y] = found.xy_m.into();
     let point_m = Vector3::new(x, y, support_m(model, x, y) + 0.5 * thing.height_m);
     let onto_table = onto_table(model, boxes, &point_m)?;
-    // The eyes' own share is that of what both see there, brought along the line of sight to the table: mount,
-    // lenses and effects move the rays, and where they meet does not matter any more.
+    // What is not known of mount, lenses and effects moves the rays, and where they meet does not matter any
+    // more: it is brought along the line of sight to the table. What was read in the images is in the boxes.
+    let of_eyes = model.place(in_left, &Matrix3::zeros(), boxes.posture, &boxes.under)?;
     let brought = |covariance_m2: &Matrix3<f64>| onto_table * covariance_m2 * onto_table.transpose();
-    let by_mount_m2 = brought(&seen.by_mount_m2);
-    let covariance_m2 = brought(&seen.covariance_m2) + of_outline(&found);
+    let by_mount_m2 = brought(&of_eyes.by_mount_m2);
+    let covariance_m2 = brought(&of_eyes.covariance_m2) + of_outline(&found);
     Some(PlaceInRobot { point: Point::new(point_m.x, point_m.y, point_m.z), covariance_m2, by_mount_m2 })
 }
 

@@ -9,7 +9,9 @@ use plumbline_grasp::stands;
 use plumbline_grasp::things::Thing;
 use plumbline_model::detection::{ClassIndex, ClassNames, Detection, PixelBox};
 use plumbline_model::{AimedPair, Eye, Pixel, Raw, Rectified, StereoCalibration, StereoFrame};
-use plumbline_vision::detect_places::{ObjectPlace, Place, PlaceFinder, PlaceOptions, RangeFrom, Seen};
+use plumbline_vision::detect_places::{
+    Estimate, ObjectPlace, Place, PlaceFinder, PlaceOptions, RangeFrom, Seen,
+};
 
 use super::view::{NoObjectPlace, ObjectPlaceView, ObjectView, SeenBox};
 use crate::ground::jobs::panic_message;
@@ -136,17 +138,17 @@ fn object_view(
     // Without a setup that is why, whatever the boxes say.
     let alone_because = setup.err().map(ToString::to_string).or(alone_because);
     let place = object.place.as_ref();
-    let found = match (place, setup) {
+    let name = class_name(names, object.class);
+    let stands =
+        place.ok().zip(setup.ok()).and_then(|(place, setup)| stands(place, setup, &name, [&left, &right]));
+    let in_robot = match (place, setup) {
         (_, Err(why)) => Err(why.clone()),
         (Err(why), _) => Err((*why).into()),
         (Ok(place), Ok(setup)) => {
-            let middle = &place.middle;
-            let found = setup.place(&middle.point, &middle.covariance_m2).map_err(NoObjectPlace::from);
-            found.map(|found| (found, &**setup))
+            let found = setup.place(&place.middle.point, &place.middle.covariance_m2);
+            found.map(|found| place_view(&found, setup)).map_err(NoObjectPlace::from)
         }
     };
-    let name = class_name(names, object.class);
-    let stands = found.as_ref().ok().and_then(|(found, setup)| stands(found, setup, &name, [&left, &right]));
     ObjectView {
         class: object.class,
         name,
@@ -154,7 +156,7 @@ fn object_view(
         right,
         epipolar_px,
         alone_because,
-        place: found.map(|(found, setup)| place_view(&found, setup)),
+        place: in_robot,
         stands,
         voted: place.map(|place| place.votes.cells().collect()).unwrap_or_default(),
         leak: place.ok().and_then(leak),
@@ -164,7 +166,7 @@ fn object_view(
 
 /// Where it stands on the table, if its shape is known.
 fn stands(
-    found: &PlaceInRobot,
+    place: &Place,
     setup: &LiveSetup,
     name: &str,
     seen: [&Option<SeenBox>; 2],
@@ -174,7 +176,8 @@ fn stands(
         Some([x0_px, y0_px, x1_px, y1_px])
     });
     let boxes = Boxes { boxes_px: &boxes_px, posture: &setup.posture, under: setup.seen_under() };
-    let stands = stands::place(&setup.model, &Thing::of_class(name)?, &boxes, found)?;
+    let Estimate { point, covariance_m2, .. } = &place.middle;
+    let stands = stands::place(&setup.model, &Thing::of_class(name)?, &boxes, point, covariance_m2)?;
     Some(place_view(&stands, setup))
 }
 

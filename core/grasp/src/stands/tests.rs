@@ -3,9 +3,9 @@ use std::sync::Arc;
 use nalgebra::{Matrix3, Vector2, Vector3};
 use plumbline_effects::rig_model::{ModelEffect, PlacedScreen, RigModel};
 use plumbline_effects::robot_model::SeenUnder;
-use plumbline_effects::{Kind, PlaceInRobot, RobotModel};
-use plumbline_model::Point;
+use plumbline_effects::{Kind, RobotModel};
 use plumbline_model::robot::default_rig;
+use plumbline_model::{LeftCamera, Point};
 use plumbline_vision::synthetic::Noise;
 
 use super::*;
@@ -39,9 +39,16 @@ fn middle_m(model: &RobotModel, thing: &Thing, at_m: [f64; 2]) -> Vector3<f64> {
     Vector3::new(x, y, support_m(model, x, y) + 0.5 * thing.height_m)
 }
 
-fn seen_at(point_m: Vector3<f64>, covariance_m2: Matrix3<f64>) -> PlaceInRobot {
-    let point = Point::new(point_m.x, point_m.y, point_m.z);
-    PlaceInRobot { point, covariance_m2, by_mount_m2: Matrix3::zeros() }
+/// Where both eyes put a point of the robot's frame.
+fn in_left(model: &RobotModel, point_m: Vector3<f64>) -> Point<LeftCamera> {
+    let left_from_robot = model.robot_from_left(&model.rig().home()).inverse();
+    left_from_robot * Point::new(point_m.x, point_m.y, point_m.z)
+}
+
+/// The same covariance in the axes of the left eye.
+fn turned(model: &RobotModel, covariance_m2: Matrix3<f64>) -> Matrix3<f64> {
+    let turn = model.robot_from_left(&model.rig().home()).rotation();
+    turn.transpose() * covariance_m2 * turn
 }
 
 /// Along the line of sight of the left eye, of length 1.
@@ -60,8 +67,10 @@ fn a_thing_that_is_seen_too_far_along_the_line_of_sight_is_where_it_stands() {
         let along = sight(&model, &truly_m);
         let covariance_m2 = along * along.transpose() * 0.01_f64.powi(2) + Matrix3::identity() * 1e-8;
         for off_m in [-0.012, 0.012] {
-            let seen = seen_at(truly_m + along * off_m, covariance_m2);
-            let found = place(&model, &thing, &boxes, &seen).expect("it stands there");
+            let in_left = in_left(&model, truly_m + along * off_m);
+            let covariance_m2 = turned(&model, covariance_m2);
+            let seen = model.place(&in_left, &covariance_m2, &posture, &boxes.under).expect("seen");
+            let found = place(&model, &thing, &boxes, &in_left, &covariance_m2).expect("it stands there");
             let left_m = (found.point.coords.coords - truly_m).norm();
             assert!(left_m < 2e-4, "{thing:?} at {at_m:?}: {left_m} m");
             assert!(found.sigma_m() < 0.6 * seen.sigma_m(), "{} of {} m", found.sigma_m(), seen.sigma_m());
@@ -76,13 +85,16 @@ fn what_hangs_in_the_air_and_what_stands_on_a_table_that_nobody_measured_stays_w
     let thing = Thing::of_class("Tomato").expect("known");
     let boxes_px = boxes_around(&measured, &thing, Vector2::new(0.3, 0.1));
     let boxes = Boxes { boxes_px: &boxes_px, posture: &posture, under: SeenUnder::default() };
-    let standing = seen_at(middle_m(&measured, &thing, [0.3, 0.1]), Matrix3::identity() * 4e-6);
-    assert!(place(&measured, &thing, &boxes, &standing).is_some());
-    assert_eq!(place(&model(None), &thing, &boxes, &standing), None);
-    let lifted = seen_at(standing.point.coords.coords + Vector3::z() * 0.06, standing.covariance_m2);
-    assert_eq!(place(&measured, &thing, &boxes, &lifted), None);
+    let standing_m = middle_m(&measured, &thing, [0.3, 0.1]);
+    let covariance_m2 = Matrix3::identity() * 4e-6;
+    let at = |model: &RobotModel, boxes: &Boxes<'_>, point_m: Vector3<f64>| {
+        place(model, &thing, boxes, &in_left(model, point_m), &covariance_m2)
+    };
+    assert!(at(&measured, &boxes, standing_m).is_some());
+    assert_eq!(at(&model(None), &boxes, standing_m), None);
+    assert_eq!(at(&measured, &boxes, standing_m + Vector3::z() * 0.06), None);
     let nowhere = Boxes { boxes_px: &[None, None], ..boxes };
-    assert_eq!(place(&measured, &thing, &nowhere, &standing), None);
+    assert_eq!(at(&measured, &nowhere, standing_m), None);
 }
 
 /// Boxes, heights and an eye that is turned are off as is stated: errors and statement agree.
@@ -102,8 +114,9 @@ fn what_is_stated_holds_for_boxes_heights_and_rays_that_are_off_as_they_say() {
         let boxes = Boxes { boxes_px: &boxes_px, posture: &posture, under: SeenUnder::default() };
         let along = sight(&model, &truly_m);
         let covariance_m2 = along * along.transpose() * 0.005_f64.powi(2);
-        let seen = seen_at(truly_m + along * (0.005 * noise.normal()), covariance_m2);
-        let found = place(&model, &thing, &boxes, &seen).expect("it stands there");
+        let in_left = in_left(&model, truly_m + along * (0.005 * noise.normal()));
+        let found =
+            place(&model, &thing, &boxes, &in_left, &turned(&model, covariance_m2)).expect("it stands there");
         // The table is as high as is thought, so that the height is exact, and one number less is random.
         let error_m = (found.point.coords.coords - truly_m).xy();
         let by_boxes = boxes.on_table(&model, &thing, truly_m.xy()).expect("found");

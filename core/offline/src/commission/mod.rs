@@ -38,8 +38,8 @@ use plumbline_grasp::Hand;
 use plumbline_model::JobContext;
 use plumbline_model::files::{self, Size};
 use plumbline_model::robot::Rig;
-use plumbline_twin::{Scenario, Toy};
 use plumbline_twin::eyes::EyeRenderer;
+use plumbline_twin::{Scenario, Toy};
 use serde::Serialize;
 
 pub use error::CommissionError;

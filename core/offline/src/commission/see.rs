@@ -72,7 +72,9 @@ impl Seer {
             };
             let boxes_px = [area(Eye::Left, &left), area(Eye::Right, &right)];
             let boxes = Boxes { boxes_px: &boxes_px, posture: &sight.posture, under: seen };
-            let stands = thing.and_then(|thing| stands::place(&self.model, &thing, &boxes, &by_eyes));
+            let stands = thing.and_then(|thing| {
+                stands::place(&self.model, &thing, &boxes, &middle.point, &middle.covariance_m2)
+            });
             Some(Found { place: stands.unwrap_or(by_eyes), by_eyes })
         }))
     }
