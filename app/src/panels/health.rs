@@ -1,8 +1,9 @@
 //! Whether the calibration in use still holds, and whether the proposed one is better: one button, and what came of it.
 
 use egui::{Button, Ui};
+use jiff::Timestamp;
 use plumbline_engine::View;
-use plumbline_engine::view::{EyesHealth, HealthFigures, HealthState};
+use plumbline_engine::view::{EyesHealth, HealthFigures, HealthState, HealthView};
 use plumbline_widgets::format;
 use plumbline_widgets::key_value::{KeyValue, key_value_grid};
 use plumbline_widgets::theme::{self, group_heading, space};
@@ -24,7 +25,7 @@ pub fn show(ui: &mut Ui, view: &View, outbox: &mut Outbox) {
         HealthState::Gathering { pairs, of } => busy(ui, &format!("Looks: {pairs} of {of} pairs.")),
         HealthState::Judging => busy(ui, "Compares what both eyes see."),
         HealthState::Failed(why) => warning(ui, why),
-        HealthState::Judged(health) => judged(ui, health, view.eyes.health.colder_wait_min),
+        HealthState::Judged(health) => judged(ui, health, &view.eyes.health),
     }
     // What is not offered is said where it would be.
     let against = view.eyes.health.is_against_proposal();
@@ -47,12 +48,21 @@ fn busy(ui: &mut Ui, text: &str) {
     });
 }
 
-fn judged(ui: &mut Ui, health: &EyesHealth, colder_wait_min: Option<f64>) {
-    let said = words::in_use(health, colder_wait_min);
-    if health.in_use.is_good {
-        ui.label(said);
+fn judged(ui: &mut Ui, health: &EyesHealth, view: &HealthView) {
+    let now = Timestamp::now();
+    if let Some(why) = view.when.as_ref().and_then(|when| words::outdated(when, now)) {
+        warning(ui, &why);
+        ui.label(theme::weak(ui, words::said_then(health)));
     } else {
-        warning(ui, &said);
+        let said = words::in_use(health, view.colder_wait_min);
+        if health.in_use.is_good {
+            ui.label(said);
+        } else {
+            warning(ui, &said);
+        }
+    }
+    if let Some(when) = &view.when {
+        ui.label(theme::small(ui, words::judged(when, now)));
     }
     figures(ui, "In use", &health.in_use);
     if let Some((proposed, _)) = &health.proposed {

@@ -1,6 +1,6 @@
 //! The inspector: what is known about the thing that is looked at or chosen.
 
-use egui::{Panel, ScrollArea, Slider, Ui};
+use egui::{Panel, RichText, ScrollArea, Slider, Ui};
 use plumbline_engine::view::{AimView, BoardPlace, SourceStatus};
 use plumbline_engine::{AimChoice, Destination, EyesCommand, HeadPose, LiveCommand, RobotCommand, View};
 use plumbline_model::{Eye, PairFit};
@@ -11,6 +11,7 @@ use plumbline_widgets::key_value::{KeyValue, big_figure, key_value_grid};
 use plumbline_widgets::theme::{self, Role, group_heading, space};
 
 use super::{PlumblineWindow, undo};
+use crate::operator::words::sources;
 use crate::operator::{Outbox, Screen, hint_text};
 use crate::panels::{
     PanelState, chosen_fit, probe_readout, show_commission_inspector, show_drift_inspector,
@@ -187,7 +188,7 @@ fn source(ui: &mut Ui, view: &View) {
         return;
     }
     group_heading(ui, "Source");
-    ui.label(&view.source.description);
+    in_short(ui, &view.source.description, |_, short| RichText::new(short));
     let mut rows = Vec::new();
     if let Some(frame) = &view.live.raw {
         if let Some(name) = &frame.name {
@@ -357,7 +358,16 @@ fn provenance(ui: &mut Ui, view: &View) {
     );
     for text in [evidence.board.to_string(), evidence.source.clone(), evidence.software.clone()] {
         if !text.is_empty() {
-            ui.label(theme::weak(ui, text));
+            in_short(ui, &text, |ui, short| theme::weak(ui, short));
         }
+    }
+}
+
+/// Pairs by the names of their folders; the whole paths where it is pointed at.
+fn in_short(ui: &mut Ui, text: &str, drawn: impl FnOnce(&Ui, &str) -> RichText) {
+    let short = sources::in_short(text);
+    let label = ui.label(drawn(ui, &short));
+    if short != text {
+        label.on_hover_text(text);
     }
 }

@@ -78,7 +78,10 @@ fn connected(robot: &RobotView) -> (String, Health, Option<String>) {
     if matches!(robot.motion, MotionState::Unknown)
         && let Some(warning) = bus.warnings.first()
     {
-        return ("silent".to_owned(), Health::Failed, Some(warning.clone()));
+        // All answer, but too late: that is load, too.
+        let is_late = bus.missing.is_empty() && !bus.late.is_empty();
+        let word = if is_late { "late" } else { "silent" };
+        return (word.to_owned(), Health::Failed, Some(warning.clone()));
     }
     let Some(rate) = bus.cycles_per_s else { return ("starting".to_owned(), Health::Working(0.5), None) };
     let value = format::hertz(rate);

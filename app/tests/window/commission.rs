@@ -298,11 +298,11 @@ fn the_hands_are_looked_at_then_what_was_learned_is_accepted() {
 
     // What lacks is said, and where it is made.
     Arc::make_mut(&mut view.handeye).proposal = None;
-    let text = "No touches were learned from: touch the screen.".to_owned();
+    let text = "No touches to learn from were found in lab/sessions: touch the screen.".to_owned();
     let gate = Gate { name: "Touches", state: GateState::Shut, text };
     Arc::make_mut(&mut view.handeye).gates = Arc::from([gate]);
     let window = Fake::over(view).window(on(Screen::HandEye));
-    assert!(says(&window, "No touches were learned from"));
+    assert!(says(&window, "No touches to learn from were found in lab/sessions"));
 }
 
 #[test]

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use plumbline::{Screen, WindowSettings};
 use plumbline_engine::view::{
-    AcceptedCalibration, EyesHealth, EyesView, HealthFigures, HealthState, HealthView, Origin, Proposal,
-    ProposalHealth, SourceStatus, SourceView,
+    AcceptedCalibration, EyesHealth, EyesView, HealthFigures, HealthState, HealthView, JudgedWhen, Origin,
+    Proposal, ProposalHealth, SourceStatus, SourceView,
 };
 use plumbline_engine::{Command, EyesCommand, View};
 use plumbline_model::StereoCalibration;
@@ -36,7 +36,7 @@ fn judged(in_use_m: f64, proposed: Option<(f64, ProposalHealth)>) -> HealthState
 
 fn with(state: HealthState) -> View {
     let judged = if let HealthState::Judged(health) = &state { Some(health.clone()) } else { None };
-    with_health(HealthView { state, judged, colder_wait_min: None })
+    with_health(HealthView { state, judged, ..HealthView::default() })
 }
 
 /// A calibration is in use, and another one proposed.
@@ -91,11 +91,51 @@ fn it_is_asked_for_beside_drift_and_answered_in_centimeters() {
     }
 }
 
+/// Still good when it was judged, so many minutes ago.
+fn good_before(minutes: i64, eyes_on_min: Option<f64>, moved_m: Option<[f64; 3]>) -> View {
+    let HealthState::Judged(health) = judged(0.004, None) else { unreachable!("just made") };
+    let at = jiff::Timestamp::now() - jiff::SignedDuration::from_mins(minutes);
+    with_health(HealthView {
+        state: HealthState::Judged(health.clone()),
+        judged: Some(health),
+        when: Some(JudgedWhen { at, eyes_on_min, moved_m }),
+        colder_wait_min: None,
+    })
+}
+
+#[test]
+fn what_was_judged_says_when_and_with_which_eyes() {
+    for (eyes_on_min, words) in [
+        (Some(2.0), "Judged 2 min ago, with cold eyes."),
+        (Some(40.0), "Judged 2 min ago, with warm eyes."),
+        (None, "Judged 2 min ago."),
+    ] {
+        let fake = Fake::over(good_before(2, eyes_on_min, None));
+        let window = fake.window(on(Screen::Drift));
+        assert!(says(&window, words) && says(&window, "in use is still good"), "{words}");
+    }
+}
+
+#[test]
+fn what_was_judged_steps_back_once_places_have_moved_or_it_is_old() {
+    let moved = good_before(2, Some(2.0), Some([0.016, 0.031, 0.063]));
+    let old = good_before(14, Some(2.0), None);
+    for (view, why) in [(moved, "Places have moved by 63.0 mm"), (old, "It was judged a while ago")] {
+        let fake = Fake::over(view);
+        let window = fake.window(on(Screen::Drift));
+        assert!(says(&window, why) && says(&window, "Then the calibration in use was still good"), "{why}");
+        assert!(!says(&window, "in use is still good"), "{why}");
+    }
+    // What a grasp bears changes nothing.
+    let fake = Fake::over(good_before(2, Some(2.0), Some([0.001, 0.002, 0.004])));
+    assert!(says(&fake.window(on(Screen::Drift)), "in use is still good"));
+}
+
 #[test]
 fn cold_eyes_are_told_to_wait_instead_of_being_calibrated_again() {
     let HealthState::Judged(health) = judged(0.04, None) else { unreachable!("just made") };
     let state = HealthState::Judged(health.clone());
-    let health = HealthView { state, judged: Some(health), colder_wait_min: Some(11.0) };
+    let health = HealthView { state, judged: Some(health), when: None, colder_wait_min: Some(11.0) };
     let fake = Fake::over(with_health(health));
     let window = fake.window(on(Screen::Drift));
     assert!(says(&window, "Wait 11 min, then ask again.") && says(&window, "off by 1.0 cm near"));

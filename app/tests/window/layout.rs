@@ -18,7 +18,7 @@ pub(super) const SLACK: f32 = 2.0;
 /// How high the bar of tabs is, pt.
 const TAB_BAR: f32 = 32.0;
 
-const SIZES: [[f32; 2]; 2] = [[1024.0, 700.0], [1440.0, 900.0]];
+const SIZES: [[f32; 2]; 3] = [[1024.0, 700.0], [1280.0, 800.0], [1440.0, 900.0]];
 
 /// A line of text as it is painted.
 pub(super) struct Line {

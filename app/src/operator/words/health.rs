@@ -1,7 +1,46 @@
 //! Whether a calibration still holds, in words.
 
-use plumbline_engine::view::{EyesHealth, EyesView, HealthFigures, ProposalHealth};
+use std::time::Duration;
+
+use jiff::Timestamp;
+use plumbline_engine::view::{EyesHealth, EyesView, HealthFigures, JudgedWhen, ProposalHealth};
 use plumbline_widgets::format;
+
+/// What was judged longer ago says nothing of now: eyes that warm up turn within minutes.
+const OLD: Duration = Duration::from_secs(300);
+
+/// "Judged 14 min ago, with cold eyes."
+pub fn judged(when: &JudgedWhen, now: Timestamp) -> String {
+    let ago = format::age(age(when, now));
+    match when.is_cold() {
+        Some(true) => format!("Judged {ago}, with cold eyes."),
+        Some(false) => format!("Judged {ago}, with warm eyes."),
+        None => format!("Judged {ago}."),
+    }
+}
+
+/// Why what was judged does not stand any more; `None`: it stands.
+pub fn outdated(when: &JudgedWhen, now: Timestamp) -> Option<String> {
+    if let Some(moved_m) = when.moved_too_far_m() {
+        return Some(format!(
+            "Places have moved by {} since it was judged: it does not stand any more. Ask again.",
+            format::mm(moved_m)
+        ));
+    }
+    (age(when, now) > OLD)
+        .then(|| "It was judged a while ago, and nobody has looked since. Ask again.".to_owned())
+}
+
+fn age(when: &JudgedWhen, now: Timestamp) -> Duration {
+    // A clock that was set back makes nothing younger than new.
+    Duration::try_from(now.duration_since(when.at)).unwrap_or_default()
+}
+
+/// What was said of the calibration in use, where it does not stand any more.
+pub fn said_then(health: &EyesHealth) -> String {
+    let was = if health.in_use.is_good { "still good" } else { "not good" };
+    format!("Then the calibration in use was {was}: places were off by {}.", off(&health.in_use))
+}
 
 /// How far off the calibration in use puts places, and whether that is still good; `colder_wait_min`: the eyes are colder than
 /// when it was made, for so many minutes more.

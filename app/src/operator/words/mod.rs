@@ -7,6 +7,7 @@ pub mod grasp;
 pub mod health;
 pub mod proof;
 pub mod robot;
+pub mod sources;
 pub mod timeline;
 pub mod trials;
 pub mod truth;

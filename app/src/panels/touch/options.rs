@@ -39,11 +39,19 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, options: &PlanOptions) {
 
 fn row(ui: &mut Ui, label: &str, contents: impl FnOnce(&mut Ui)) {
     ui.label(theme::weak(ui, label));
-    ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = space::XS;
-        contents(ui);
-    });
+    cell(ui, contents);
     ui.end_row();
+}
+
+/// A grid puts what is as high as one line in the middle of its row, from where more lines would grow over the next
+/// row: this begins at the top.
+fn cell(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
+    ui.vertical(|ui| {
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = space::XS;
+            contents(ui);
+        });
+    });
 }
 
 fn purpose(ui: &mut Ui, purpose: &mut Purpose) {
@@ -119,8 +127,7 @@ fn patterns(ui: &mut Ui, patterns: &mut Vec<Pattern>) {
         let at = patterns.iter().position(same);
         let mut on = at.is_some();
         let changed = ui.checkbox(&mut on, name(&default)).changed();
-        ui.horizontal(|ui| {
-            ui.spacing_mut().item_spacing.x = space::XS;
+        cell(ui, |ui| {
             if let Some(pattern) = at.and_then(|at| patterns.get_mut(at)) {
                 fields(ui, pattern);
             }

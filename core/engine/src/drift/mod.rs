@@ -3,6 +3,7 @@
 mod around;
 mod cold;
 pub mod command;
+mod explained;
 mod figures;
 mod grid;
 mod grid_room;

@@ -3,15 +3,15 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use plumbline_drift::{Monitor, Sample, Verdict, is_too_short};
+use plumbline_drift::{Monitor, Sample, Verdict};
+use plumbline_effects::RobotModel;
 use plumbline_model::StereoFrame;
 
 use super::DriftAround;
-use super::cold::counted_twice;
 use super::command::DriftCommand;
 use super::grid_room::{GridRoom, PlacesResult};
 use super::stage::{DriftInput, DriftOutput};
-use super::view::{DriftCourse, DriftView};
+use super::view::{DriftCourse, DriftPoint, DriftView};
 use super::watch::{EVERY, FIRST, Watch};
 pub use super::work::Context;
 use super::work::{DriftResult, DriftWork};
@@ -31,18 +31,20 @@ const CLOCK_WAS_SET: &str =
 pub struct DriftWorkflow {
     /// Counts watches.
     number: u64,
-    watch: Option<Watch>,
+    pub(super) watch: Option<Watch>,
     /// What was seen in the watch under way, else in the last one.
     course: Option<Arc<DriftCourse>>,
+    /// The model with which the last watch was told that has ended.
+    told_with: Option<Arc<RobotModel>>,
     failed: Option<String>,
     down: Option<String>,
-    data_dir: PathBuf,
+    pub(super) data_dir: PathBuf,
     /// A session is being made of what was watched.
-    logging: Option<JobId>,
+    pub(super) logging: Option<JobId>,
     /// What was watched is being told with another model.
-    retelling: Option<JobId>,
+    pub(super) retelling: Option<JobId>,
     /// The session that was made last, and whether somebody was told of it.
-    log: Option<(PathBuf, bool)>,
+    pub(super) log: Option<(PathBuf, bool)>,
     grid: GridRoom,
 }
 
@@ -55,6 +57,17 @@ impl DriftWorkflow {
     /// Whether it watches.
     pub fn is_watching(&self) -> bool {
         self.watch.is_some()
+    }
+
+    /// Which watch it is, counted, with which model it is told, and its newest look, also when it has ended; `None`:
+    /// nothing was seen yet.
+    pub fn newest(&self) -> Option<(u64, &Arc<RobotModel>, &DriftPoint)> {
+        let model = match &self.watch {
+            Some(watch) => &watch.model,
+            None => self.told_with.as_ref()?,
+        };
+        let course = self.course.as_ref().filter(|_| self.retelling.is_none())?;
+        Some((self.number, model, course.points.last()?))
     }
 
     /// Whether the board is to be looked for: nothing is remembered yet.
@@ -167,53 +180,6 @@ impl DriftWorkflow {
         self.course = watch.course().map(Arc::new);
     }
 
-    fn explain(&mut self, around: &DriftAround, context: &mut Context<'_>) {
-        if let Some(why) = self.unexplained(around) {
-            return context.refuse(format!("What was watched cannot be explained: {why}."));
-        }
-        let (Some(watch), Some(world)) = (&self.watch, around.world) else { return };
-        for words in counted_twice(around) {
-            context.notices.add(NoticeLevel::Warning, words);
-        }
-        self.logging = Some(context.start(DriftWork::WriteLog {
-            sessions: world.folder(&self.data_dir).join("sessions"),
-            samples: watch.monitor.samples().into(),
-            model: around.model.clone(),
-            posture: around.posture(),
-            at: context.time.day,
-        }));
-    }
-
-    /// Why what was watched cannot be explained now, a part of a sentence; `None`: it can.
-    fn unexplained(&self, around: &DriftAround) -> Option<&'static str> {
-        let Some(watch) = &self.watch else { return Some("nothing is being watched") };
-        if self.logging.is_some() || self.retelling.is_some() {
-            return Some("it is being worked at already; wait a moment");
-        }
-        if !watch.from_switching_on && around.is_recorded {
-            return Some("this recording does not say when its cameras were switched on");
-        }
-        if !watch.from_switching_on {
-            return Some(
-                "nobody knows when the cameras were switched on; say it at the clock in the top line, and it is \
-                 watched anew",
-            );
-        }
-        if around.world.is_none() {
-            return Some("the eyes that are shown are not those of the robot that is connected");
-        }
-        let samples = watch.monitor.samples();
-        let span_s = samples.first().zip(samples.last()).map_or(0.0, |(first, last)| last.at_s - first.at_s);
-        is_too_short(samples.len(), span_s)
-            .then_some("it has to be watched for at least 3 minutes, better 10")
-    }
-
-    /// The session that was made of what was watched, once.
-    pub fn next_log(&mut self) -> Option<PathBuf> {
-        let (log, told) = self.log.as_mut()?;
-        (!std::mem::replace(told, true)).then(|| log.clone())
-    }
-
     fn begin(&mut self, around: &DriftAround, now: Time) {
         self.number += 1;
         self.retelling = None;
@@ -275,7 +241,9 @@ impl Workflow for DriftWorkflow {
             }
             DriftCommand::Stop if self.watch.is_none() => context.refuse("Nothing is being watched."),
             DriftCommand::Stop => {
-                self.watch = None;
+                // What is told with another model while it ends is not told any more.
+                let told = self.watch.take().filter(|_| self.retelling.is_none());
+                self.told_with = told.map(|watch| watch.model);
                 self.retelling = None;
             }
             DriftCommand::Explain => self.explain(around, context),

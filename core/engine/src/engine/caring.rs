@@ -48,6 +48,7 @@ impl Hub<'_> {
         match control {
             // These come by themselves; nobody waits for an answer.
             RobotControl::UseModel(_)
+            | RobotControl::BoardLooked(_)
             | RobotControl::AbandonTouch
             | RobotControl::Contact(_)
             | RobotControl::Robot(

@@ -49,6 +49,12 @@ impl EyesWorkflow {
         }
     }
 
+    /// Whether nothing more is to be had of the board where it is: it was captured, could be, or has been there before.
+    pub fn is_done_with_board(&self) -> bool {
+        use CaptureHint::{Captured, NothingNew, Ready};
+        matches!(self.hint, Some(Captured { .. } | NothingNew | Ready))
+    }
+
     fn judge(&mut self, look: &Look, size_px: (u32, u32), around: &EyesAround) -> CaptureHint {
         let known = look.frame.name.as_ref().is_some_and(|name| self.collection.contains(name));
         let both = look.left.as_ref().zip(look.right.as_ref());

@@ -7,17 +7,15 @@ use std::time::{Duration, Instant};
 use jiff::Timestamp;
 use plumbline_model::{StereoCalibration, StereoFrame};
 
-use super::clock::is_live;
 use super::health_by_itself::ByItself;
-use super::view::{EyesHealth, HealthState, HealthView, ProposalHealth};
+use super::view::{Drifted, EyesHealth, HealthState, JudgedWhen};
 use super::work::{Context, EyesWork, Health, HealthEnded, Pictures};
 use super::workflow::{EyesAround, EyesWorkflow};
 use crate::ground::jobs::JobId;
-use crate::ground::warming::Warmth;
 use crate::source::view::{SourceStatus, SourceView};
 
 /// So many pairs are looked at …
-const PAIRS: usize = 4;
+pub(super) const PAIRS: usize = 4;
 /// … one in so long: what passes before the eyes is not in all of them.
 const EVERY: Duration = Duration::from_secs(1);
 /// Where pairs come slowly, those that came within this time are judged …
@@ -61,7 +59,7 @@ pub(super) struct Gathering {
     pub ask: Ask,
     /// Of which source, counted.
     opened: u64,
-    pairs: Vec<Pictures>,
+    pub pairs: Vec<Pictures>,
     due: Instant,
 }
 
@@ -70,8 +68,26 @@ pub(super) struct Gathering {
 pub(super) struct Judging {
     job: JobId,
     of: Of,
-    ask: Ask,
+    pub ask: Ask,
     since: Instant,
+}
+
+/// What was judged, of what, and how things stood then.
+#[derive(Clone, Debug)]
+pub(super) struct Judged {
+    pub of: Of,
+    pub health: Arc<EyesHealth>,
+    at: Timestamp,
+    eyes_on_min: Option<f64>,
+    drifted: Option<Drifted>,
+}
+
+impl Judged {
+    /// When that was, and what has come since.
+    pub fn when(&self, around: &EyesAround) -> JudgedWhen {
+        let moved_m = around.drifted.as_ref().and_then(|now| now.since(self.drifted.as_ref()));
+        JudgedWhen { at: self.at, eyes_on_min: self.eyes_on_min, moved_m }
+    }
 }
 
 /// How far it is, and what was judged last.
@@ -81,9 +97,9 @@ pub(super) struct HealthRoom {
     pub judging: Option<Judging>,
     pub by_itself: ByItself,
     /// How judging ended last.
-    ended: Option<(Of, HealthState)>,
+    pub ended: Option<(Of, HealthState)>,
     /// What was judged last: it stands while it is looked at again, and when nothing comes of that.
-    judged: Option<(Of, Arc<EyesHealth>)>,
+    pub judged: Option<Judged>,
     /// What was judged and told last, and when: what nobody asked for and is as it was is not told.
     told: Option<(Timestamp, Arc<EyesHealth>)>,
 }
@@ -252,7 +268,13 @@ impl EyesWorkflow {
         };
         self.rest(busy, context.time.instant);
         if let HealthState::Judged(health) = &state {
-            self.health.judged = Some((of.clone(), health.clone()));
+            self.health.judged = Some(Judged {
+                of: of.clone(),
+                health: health.clone(),
+                at: context.time.day,
+                eyes_on_min: self.eyes_on_min(around, context.time.instant),
+                drifted: around.drifted.clone(),
+            });
             let is_told = self.tell_of_health((&of, health), ask, around, context);
             // What cold eyes see says nothing of a calibration that was made warm.
             let says_something =
@@ -274,10 +296,10 @@ impl EyesWorkflow {
 
     /// Whether these were judged.
     pub(super) fn has_judged(&self, of: &Of) -> bool {
-        self.health.judged.as_ref().is_some_and(|(judged, _)| judged.is(of))
+        self.health.judged.as_ref().is_some_and(|judged| judged.of.is(of))
     }
 
-    fn has_ended(&self, of: &Of) -> bool {
+    pub(super) fn has_ended(&self, of: &Of) -> bool {
         self.health.ended.as_ref().is_some_and(|(ended, _)| ended.is(of))
     }
 
@@ -290,54 +312,6 @@ impl EyesWorkflow {
         self.rest_since(since, now);
         if let Some(why) = why.filter(|_| !ask.by_itself) {
             self.health.ended = Some((of, HealthState::Failed(why.to_owned())));
-        }
-    }
-
-    /// What the window shows of it: of the calibration in use and of the proposal as they are now, and of nothing else.
-    pub(super) fn shown_health(&self, around: &EyesAround, instant: Instant) -> HealthView {
-        let now = self.to_be_judged();
-        let is_of_now = |of: &Of| now.as_ref().is_some_and(|now| of.is(now));
-        // Looking again by itself leaves what stands there.
-        let has_ended = now.as_ref().is_some_and(|now| self.has_ended(now));
-        let is_shown = |ask: &Ask| !ask.by_itself || !has_ended;
-        let gathering = self.health.gathering.as_ref().filter(|gathering| is_shown(&gathering.ask));
-        let gathered = gathering.map(|gathering| gathering.pairs.len());
-        let judging = self.health.judging.as_ref().filter(|judging| is_shown(&judging.ask));
-        let ended = self.health.ended.as_ref().filter(|(of, _)| is_of_now(of));
-        let judged = self.health.judged.as_ref().filter(|(of, _)| is_of_now(of));
-        let state = match (gathered, judging) {
-            (Some(pairs), _) => HealthState::Gathering { pairs, of: PAIRS },
-            (None, Some(_)) => HealthState::Judging,
-            (None, None) => ended.map_or(HealthState::NotAsked, |(_, state)| state.clone()),
-        };
-        let colder_wait_min = self.to_be_warm_min(around, instant);
-        HealthView { state, judged: judged.map(|(_, health)| health.clone()), colder_wait_min }
-    }
-
-    /// In how many minutes the eyes are as warm as when the calibration in use was made; `None`: they are, or nobody knows.
-    pub(super) fn to_be_warm_min(&self, around: &EyesAround, now: Instant) -> Option<f64> {
-        let calibrated_min = self.in_use()?.evidence.as_ref()?.minutes_since_on?;
-        let of_twin_min = around.twin_on_s.filter(|_| is_live(&around.source)).map(|on_s| on_s / 60.0);
-        match Warmth::of(of_twin_min.or_else(|| self.minutes_since_on(around, now))?, calibrated_min) {
-            Warmth::Colder { wait_min } => Some(wait_min),
-            Warmth::Alike | Warmth::Warmer => None,
-        }
-    }
-
-    /// Why the proposal is not offered; `None`: it is, or nobody has judged it.
-    pub(super) fn not_offered(&self) -> Option<&'static str> {
-        let of = self.to_be_judged()?;
-        let (_, judged) = self.health.judged.as_ref().filter(|(judged, _)| judged.is(&of))?;
-        match judged.proposed?.1 {
-            ProposalHealth::Better | ProposalHealth::Untold | ProposalHealth::KnowsWhen => None,
-            ProposalHealth::Worse => Some(
-                "The proposed calibration fits what the eyes see worse than the one in use: it is not put in use. \
-                 Discard it.",
-            ),
-            ProposalHealth::Undecided => Some(
-                "The proposed calibration cannot be told apart from the one in use by what the eyes see: it is not \
-                 put in use. Discard it, or judge again with more before the eyes.",
-            ),
         }
     }
 }

@@ -2,6 +2,12 @@
 
 use std::sync::Arc;
 
+use jiff::Timestamp;
+use plumbline_effects::RobotModel;
+use plumbline_vision::health::BEARABLE_M;
+
+use crate::ground::warming::is_cold;
+
 /// Whether the calibration in use still holds, and whether the proposed one is better, by ordinary pairs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct HealthView {
@@ -9,6 +15,8 @@ pub struct HealthView {
     pub state: HealthState,
     /// What was judged last, also while it is looked at again; `None`: nothing yet, or of other calibrations.
     pub judged: Option<Arc<EyesHealth>>,
+    /// When that was, and what has come since.
+    pub when: Option<JudgedWhen>,
     /// The eyes are colder than when the calibration in use was made, and as warm after so many minutes: what it is off by
     /// until then says nothing of it. `None`: they are not, or nobody knows.
     pub colder_wait_min: Option<f64>,
@@ -19,6 +27,57 @@ impl HealthView {
     pub fn is_against_proposal(&self) -> bool {
         let proposed = self.judged.as_ref().and_then(|health| health.proposed);
         matches!(proposed, Some((_, ProposalHealth::Worse | ProposalHealth::Undecided)))
+    }
+}
+
+/// When a calibration was judged, and what has come since.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JudgedWhen {
+    /// By the clock of this computer.
+    pub at: Timestamp,
+    /// For how long the eyes had been on by then, min; `None`: nobody knows.
+    pub eyes_on_min: Option<f64>,
+    /// How far places have moved since near, in the middle and far, m, by watching drift; `None`: that says nothing.
+    pub moved_m: Option<[f64; 3]>,
+}
+
+impl JudgedWhen {
+    /// Whether the eyes had been on for too short a time to be warm; `None`: nobody knows.
+    pub fn is_cold(&self) -> Option<bool> {
+        Some(is_cold(self.eyes_on_min?))
+    }
+
+    /// How far places have moved since where that is most, where it is farther than a grasp bears, m: then nothing that
+    /// was judged holds any more.
+    pub fn moved_too_far_m(&self) -> Option<f64> {
+        let worst_m = self.moved_m?.into_iter().fold(0.0, f64::max);
+        (worst_m > BEARABLE_M).then_some(worst_m)
+    }
+}
+
+/// How far places come out from where they came out first, as far as watching drift can tell.
+#[derive(Clone, Debug)]
+pub struct Drifted {
+    /// Counts watches: each begins with nothing moved.
+    pub watch: u64,
+    /// With which model it is told.
+    pub model: Arc<RobotModel>,
+    /// Along and across the line of sight near, in the middle and far, m.
+    pub off_m: [[f64; 2]; 3],
+}
+
+impl Drifted {
+    /// How far places have moved since then (near, in the middle, far), m; where nothing was known then, since watching
+    /// began. `None`: it was told with another model.
+    pub(super) fn since(&self, then: Option<&Self>) -> Option<[f64; 3]> {
+        let Some(then) = then.filter(|then| then.watch == self.watch) else {
+            return Some(self.off_m.map(|[along_m, across_m]| along_m.hypot(across_m)));
+        };
+        let moved_m = |row: usize| {
+            let [along_m, across_m] = [0, 1].map(|axis| self.off_m[row][axis] - then.off_m[row][axis]);
+            along_m.hypot(across_m)
+        };
+        Arc::ptr_eq(&self.model, &then.model).then(|| [0, 1, 2].map(moved_m))
     }
 }
 

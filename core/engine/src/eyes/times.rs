@@ -175,6 +175,7 @@ mod tests {
             rig: default_rig(),
             arm_moves: false,
             is_watched: false,
+            drifted: None,
             is_corrected: false,
         };
         let gray = Arc::new(RgbImage::new(64, 48));

@@ -10,7 +10,9 @@ use plumbline_model::{
     CalibrationOptions, Chessboard, Corners, Eye, InnerCorners, Pixel, Raw, StereoCalibration,
 };
 
-pub use super::health_view::{EyesHealth, HealthFigures, HealthState, HealthView, ProposalHealth};
+pub use super::health_view::{
+    Drifted, EyesHealth, HealthFigures, HealthState, HealthView, JudgedWhen, ProposalHealth,
+};
 use super::map::TableMap;
 use crate::ground::jobs::JobId;
 use crate::ground::step::StepState;

@@ -20,7 +20,7 @@ use super::look::Look;
 use super::place::{nominal_cameras, place_of, rough_pose};
 use super::store::Store;
 use super::view::{
-    AcceptedCalibration, BoardPlace, BoardSeen, CaptureEnded, CaptureHint, CollectedPair, Coverage,
+    AcceptedCalibration, BoardPlace, BoardSeen, CaptureEnded, CaptureHint, CollectedPair, Coverage, Drifted,
     EarlierCalibration, EyesView, GhostBoard, Origin, Proposal, Taken,
 };
 use super::work::{Context, EyesResult, EyesWork, OpenWhat, Restore};
@@ -39,10 +39,12 @@ pub struct EyesAround {
     pub twin_on_s: Option<f64>,
     /// The robot, for where it works.
     pub rig: Arc<Rig>,
-    /// Whether the arm before these eyes moves.
+    /// Whether the arm before these eyes moves, or a run has it.
     pub arm_moves: bool,
     /// Whether drift is being watched.
     pub is_watched: bool,
+    /// What watching says by now, or said last; `None`: nothing yet.
+    pub drifted: Option<Drifted>,
     /// Whether a law of time takes off what the eyes have turned since they were calibrated.
     pub is_corrected: bool,
 }

@@ -7,6 +7,7 @@ use plumbline_model::Session;
 use plumbline_model::session::{Manifest, names};
 use serde::{Deserialize, Serialize};
 
+use super::store::KeptSession;
 use super::view::GapSession;
 use crate::ground::sessions::{Unread, folders, title_of};
 use crate::ground::text::sentence;
@@ -53,6 +54,26 @@ pub struct TableStamp {
     length: u64,
     /// Seconds since 1970 of its last change.
     changed: u64,
+}
+
+impl TableStamp {
+    /// Whether it is the same table, as far as a copy of it can tell: copies are as long, but written later.
+    fn may_be_copy_of(&self, other: &Self) -> bool {
+        self.table == other.table && self.length == other.length
+    }
+}
+
+/// The session where it is now: a lab that was moved or copied brings its sessions along, and those in its own
+/// folder `sessions` are what is meant, whatever path was noted.
+pub fn at_home(session: KeptSession, sessions: &Path) -> KeptSession {
+    let Some(home) = session.folder.file_name().map(|name| sessions.join(name)) else { return session };
+    if home == session.folder || !home.is_dir() {
+        return session;
+    }
+    let now = stamps(&home);
+    let is_copy = now.len() == session.tables.len()
+        && now.iter().zip(&session.tables).all(|(now, then)| now.may_be_copy_of(then));
+    KeptSession { folder: home, tables: if is_copy { now } else { session.tables } }
 }
 
 /// The tables of a session as they are now.

@@ -122,6 +122,33 @@ fn what_was_found_is_there_after_a_restart_and_is_added_and_taken_back() {
 }
 
 #[test]
+fn a_lab_that_was_moved_or_copied_finds_its_own_sessions() {
+    let lab = Lab::new().with_finding();
+    let copied = tempfile::tempdir().expect("temporary folder");
+    let name = Lab::session_in(std::path::Path::new("")).file_name().expect("a name").to_owned();
+    let finding = std::fs::read_dir(lab.folder.path().join("gap")).expect("read").next().expect("one");
+    let finding = finding.expect("read").path();
+    for (from, to) in [
+        (lab.folder.path().join("sessions").join(&name), copied.path().join("sessions").join(&name)),
+        (lab.folder.path().join("gap"), copied.path().join("gap")),
+    ] {
+        std::fs::create_dir_all(&to).expect("made");
+        for file in std::fs::read_dir(&from).expect("read").flatten().filter(|file| file.path().is_file()) {
+            std::fs::copy(file.path(), to.join(file.file_name())).expect("copied");
+        }
+    }
+    assert!(copied.path().join("gap").join(finding.file_name().expect("a name")).is_file());
+    let session = Lab::session_in(copied.path());
+    let mut there = Lab::on(copied);
+    let shown = there.view().shown.clone().expect("it was found");
+    assert_eq!((shown.folders.clone(), there.view().step.clone()), (vec![session.clone()], StepState::Done));
+    // The first lab may be gone.
+    drop(lab);
+    let copied = there.folder;
+    assert_eq!(Lab::on(copied).view().shown.clone().expect("found").folders, [session]);
+}
+
+#[test]
 fn a_finding_is_stale_when_its_session_changed() {
     let mut lab = Lab::new().with_finding();
     let touches = Lab::session_in(lab.folder.path()).join("touches.csv");

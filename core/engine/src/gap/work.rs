@@ -10,7 +10,7 @@ use plumbline_model::{JobContext, Session, counted, files};
 use plumbline_report::ReportContext;
 
 use super::search::{SearchError, measured, search};
-use super::sessions::{self, stamps};
+use super::sessions::{self, at_home, stamps};
 use super::store::{KeptFinding, KeptSession, Named, Store};
 use super::view::GapSession;
 use super::{at_tip, model};
@@ -298,7 +298,11 @@ fn restore(folder: &std::path::Path, rig: &Arc<Rig>) -> Restored {
         problems.push(problem.to_string());
         Vec::new()
     });
-    let (findings, unread) = Store::new(folder.join("gap")).read(&rig.name);
+    let (mut findings, unread) = Store::new(folder.join("gap")).read(&rig.name);
+    for named in &mut findings {
+        let kept = std::mem::take(&mut named.kept.sessions).into_iter();
+        named.kept.sessions = kept.map(|session| at_home(session, &folder.join("sessions"))).collect();
+    }
     problems.extend(unread);
     let model = match rig_models::load(folder, rig) {
         Ok(model) => Some(Arc::new(model)),

@@ -37,6 +37,11 @@ impl Warmth {
     }
 }
 
+/// Whether eyes that have been on for so many minutes still see otherwise than they will when they are warm.
+pub fn is_cold(on_min: f64) -> bool {
+    1.0 - share(on_min) > SHARE
+}
+
 /// Share of the way from cold to warm.
 fn share(on_min: f64) -> f64 {
     1.0 - (-on_min / WARMING_MIN).exp()
@@ -59,6 +64,12 @@ mod tests {
             );
             assert!(wait_min >= 1.0 && on_min + wait_min < calibrated_min, "{wait_min}");
         }
+    }
+
+    #[test]
+    fn eyes_are_cold_until_they_are_nearly_as_warm_as_they_get() {
+        assert!(is_cold(0.0) && is_cold(3.0) && is_cold(12.0));
+        assert!(!is_cold(13.0) && !is_cold(600.0));
     }
 
     #[test]

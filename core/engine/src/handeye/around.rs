@@ -18,6 +18,8 @@ pub struct HandEyeAround {
     pub is_changing: bool,
     /// The session of touches that the model was learned from; `None`: there is none.
     pub touches: Option<PathBuf>,
+    /// Where sessions of this lab are looked for.
+    pub sessions: PathBuf,
     /// The twin, where its arm is connected.
     pub twin: Option<Arc<TwinView>>,
 }

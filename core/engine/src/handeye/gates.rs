@@ -50,13 +50,15 @@ fn calibrated(around: &HandEyeAround) -> Gate {
 }
 
 fn touched(around: &HandEyeAround) -> Gate {
+    let none = || {
+        format!(
+            "No touches to learn from were found in {}: touch the screen, and find what makes the arm miss, in Gap.",
+            around.sessions.display()
+        )
+    };
+    let unread =
+        "The model in use is not read yet, or its file cannot be used: wait a moment, else see the log.";
+    let shut = if around.touches.is_some() { unread.to_owned() } else { none() };
     let is_open = around.touches.is_some() && around.added.is_some();
-    gate(
-        "Touches",
-        is_open,
-        [
-            "What the arm was learned from is there.",
-            "No touches were learned from: touch the screen, and find what makes the arm miss, in Gap.",
-        ],
-    )
+    gate("Touches", is_open, ["What the arm was learned from is there.", &shut])
 }

@@ -114,7 +114,14 @@ fn a_file_that_is_something_else_is_said() {
 /// A robot of which nothing is calibrated.
 fn around(rig: &Arc<Rig>, added: &Arc<RigModel>) -> HandEyeAround {
     let grasp = GraspAround::bare(rig);
-    HandEyeAround { grasp, added: Some(added.clone()), is_changing: false, touches: None, twin: None }
+    HandEyeAround {
+        grasp,
+        added: Some(added.clone()),
+        is_changing: false,
+        touches: None,
+        sessions: "lab/sessions".into(),
+        twin: None,
+    }
 }
 
 /// The workflow, and what it told.
@@ -164,6 +171,24 @@ fn what_lacks_is_said_before_anything_moves_and_nothing_is_accepted_that_was_not
     assert!(desk.tell(HandEyeCommand::Accept).contains("is being changed just now"));
     assert!(desk.tell(HandEyeCommand::End).contains("Nothing is under way"));
     assert!(!desk.view().is_looking && desk.room.take_accepted().is_none());
+}
+
+#[test]
+fn which_touches_lack_is_said_with_the_folder_and_a_model_that_was_not_read_is_no_lack_of_touches() {
+    let (rig, folder) = (rig(), tempfile::tempdir().expect("a folder for the test"));
+    let mut desk = Desk::new(&rig, &Arc::new(RigModel::nominal(&rig)), folder.path());
+    let of_touches = |desk: &mut Desk| {
+        let gates = desk.view().gates.clone();
+        gates.iter().find(|gate| gate.name == "Touches").cloned().expect("it is looked at")
+    };
+    let said = of_touches(&mut desk);
+    assert!(said.state == GateState::Shut && said.text.contains("found in lab/sessions:"), "{}", said.text);
+    desk.around.touches = Some("lab/sessions/touches".into());
+    assert_eq!(of_touches(&mut desk).state, GateState::Open);
+    desk.around.added = None;
+    let said = of_touches(&mut desk);
+    assert!(said.state == GateState::Shut && !said.text.contains("touches"), "{}", said.text);
+    assert!(said.text.contains("The model in use is not read yet"), "{}", said.text);
 }
 
 #[test]

@@ -8,6 +8,7 @@ use plumbline_hardware::joints::Touch;
 use super::command::RobotCommand;
 use super::lead::Led;
 use super::touch_order::TouchOrder;
+use crate::twin::BoardLook;
 use crate::twin::command::TwinCommand;
 
 /// What is handed to the robot's thread.
@@ -19,6 +20,8 @@ pub enum RobotControl {
     Twin(TwinCommand),
     /// The robot is known otherwise than before: what was calibrated, and the effects of the model.
     UseModel(Arc<RobotModel>),
+    /// The twin's eyes have looked for the board that it shows.
+    BoardLooked(BoardLook),
     /// Touch the screen once.
     Touch(Box<TouchOrder>),
     /// End the touch that is under way: up again, if the arm may move.

@@ -1,7 +1,6 @@
-//! What each workflow can see of the rest, and who gets which command and which result.
+//! What each workflow can see of the rest, and what follows for the others when it has changed.
 
 use std::path::Path;
-use std::time::Instant;
 
 use plumbline_correction::Method;
 use plumbline_grasp::Corrections;
@@ -10,20 +9,15 @@ use plumbline_model::touch_plan::Finger;
 use plumbline_vision::detect::Provider;
 
 use super::State;
-use super::actions::Action;
-use super::rooms::{Neighbors, Rooms, all_rooms};
-use crate::command::{Command, JobCommand, NoticeCommand};
+use super::rooms::{Neighbors, Rooms};
 use crate::commission::CommissionWorkflow;
 use crate::detect::{DetectAround, DetectWorkflow};
 use crate::drift::{BoardAt, DriftAround, DriftWorkflow};
-use crate::eyes::view::CaptureEnded;
+use crate::eyes::view::{CaptureEnded, Drifted};
 use crate::eyes::{EyesAround, EyesWorkflow};
 use crate::gap::{GapAround, GapWorkflow};
 use crate::grasp::{GraspAround, GraspWorkflow};
-use crate::ground::jobs::JobId;
-use crate::ground::stage::Skipped;
-use crate::ground::{Moment, Workflow, World};
-use crate::handeye::HandEyeWorkflow;
+use crate::ground::World;
 use crate::labels::{LabelsAround, LabelsWorkflow};
 use crate::live::LiveWorkflow;
 use crate::models::{ModelsAround, ModelsWorkflow};
@@ -33,110 +27,8 @@ use crate::robot::view::MotionState;
 use crate::scores::ScoresWorkflow;
 use crate::source::SourceWorkflow;
 use crate::source::view::SourceStatus;
-use crate::timeline::TimelineWorkflow;
 use crate::touch::{TouchAround, TouchWorkflow};
-use crate::trials::TrialsWorkflow;
 use crate::truth::{Seen, TruthAround, TruthWorkflow};
-use crate::view::View;
-use crate::work::WorkResult;
-
-macro_rules! dispatched {
-    (
-        once { $($one:ident: $Single:ident, $single:ident;)+ }
-        per_world { $($each:ident: $Worldly:ident, $worldly:ident, $whose:ident;)+ }
-        without_work { $($silent:ident: $Silent:ident, $quiet:ident;)+ }
-    ) => {
-        impl State {
-            /// Everybody reads what was accepted before.
-            pub(super) fn restore(&mut self) {
-                $(self.with::<$Single>(World::default(), |room, around, context| {
-                    Workflow::restore(room, around, context);
-                });)+
-                for world in World::ALL {
-                    $(self.with::<$Worldly>(world, |room, around, context| {
-                        Workflow::restore(room, around, context);
-                    });)+
-                }
-            }
-
-            /// Applies a command of the operator.
-            pub fn apply(&mut self, command: Command) {
-                match command {
-                    $(Command::$single(command) => {
-                        self.with::<$Single>(World::default(), |room, around, context| {
-                            Workflow::apply(room, command, around, context);
-                        });
-                    })+
-                    $(Command::$worldly(command) => {
-                        self.with::<$Worldly>(self.$whose, |room, around, context| {
-                            Workflow::apply(room, command, around, context);
-                        });
-                    })+
-                    $(Command::$quiet(command) => {
-                        self.with::<$Silent>(World::default(), |room, around, context| {
-                            Workflow::apply(room, command, around, context);
-                        });
-                    })+
-                    Command::Robot(command) => self.actions.push(Action::Robot(command.into())),
-                    Command::Twin(command) => self.actions.push(Action::Robot(command.into())),
-                    Command::Job(JobCommand::Cancel(id)) if self.jobs.is_running(id) => {
-                        self.actions.push(Action::Cancel(id));
-                    }
-                    Command::Job(JobCommand::Cancel(id) | JobCommand::Dismiss(id)) => self.jobs.dismiss(id),
-                    // Whoever owns the threads has done it.
-                    Command::Watch(_) => {}
-                    Command::Notice(NoticeCommand::Add { level, text }) => self.notices.add(level, text),
-                    Command::Notice(NoticeCommand::Clear) => self.notices.clear(),
-                }
-            }
-
-            /// What the window shows.
-            pub fn view(&mut self, skipped: Skipped, lost_commands: u64, now: Instant) -> View {
-                self.revision += 1;
-                let moment = Moment { now, skipped };
-                View {
-                    revision: self.revision,
-                    $($one: self.view_of::<$Single>(World::default(), &moment),)+
-                    $($each: self.view_of::<$Worldly>(self.$whose, &moment),)+
-                    $($silent: self.view_of::<$Silent>(World::default(), &moment),)+
-                    robot: self.robot.clone(),
-                    twin: self.twin.clone(),
-                    jobs: self.jobs.view(),
-                    notices: self.notices.view(),
-                    threads: self.faults.values().cloned().collect(),
-                    kept: self.kept.clone(),
-                    lost_commands,
-                }
-            }
-
-            /// Whoever asked for the work gets what came of it.
-            pub(super) fn work_done(&mut self, id: JobId, result: WorkResult) {
-                let world = self.world_of(id);
-                match result {
-                    $(WorkResult::$single(result) => self.with::<$Single>(world, |room, around, context| {
-                        Workflow::work_done(room, id, *result, around, context);
-                    }),)+
-                    $(WorkResult::$worldly(result) => self.with::<$Worldly>(world, |room, around, context| {
-                        Workflow::work_done(room, id, *result, around, context);
-                    }),)+
-                }
-            }
-
-            /// Nothing came of the work, whoever asked for it.
-            pub(super) fn work_gave_nothing(&mut self, id: JobId, why: Option<&str>) {
-                let world = self.world_of(id);
-                $(self.with::<$Single>(world, |room, around, context| {
-                    Workflow::work_ended(room, id, why, around, context);
-                });)+
-                $(self.with::<$Worldly>(world, |room, around, context| {
-                    Workflow::work_ended(room, id, why, around, context);
-                });)+
-            }
-        }
-    };
-}
-
-all_rooms!(dispatched);
 
 impl Neighbors<SourceWorkflow> for State {
     fn around(&self, _world: World) {}
@@ -166,7 +58,7 @@ impl Neighbors<DetectWorkflow> for State {
             opened: self.shown_of,
             photographs: source.view().photographs,
             setup: live.setup(),
-            arm_moves: matches!(self.robot.motion, MotionState::Moving { .. }),
+            arm_moves: self.arm_comes_first(),
         }
     }
 }
@@ -263,6 +155,21 @@ impl Neighbors<ScoresWorkflow> for State {
     }
 }
 
+impl State {
+    /// Whether the arm moves, or a run of touches has it between two moves: who looks by itself steps back then.
+    fn arm_comes_first(&self) -> bool {
+        let moves = matches!(self.robot.motion, MotionState::Moving { .. });
+        moves || self.rooms.touch.of(self.arm_of).is_touching()
+    }
+
+    /// How far places have moved since drift is watched, for whoever judged the eyes.
+    fn drifted(&self) -> Option<Drifted> {
+        let (watch, model, newest) = self.rooms.drift.newest()?;
+        let off_m = [0, 1, 2].map(|row| [newest.along_m[row], newest.across_m[row]]);
+        Some(Drifted { watch, model: model.clone(), off_m })
+    }
+}
+
 impl Neighbors<EyesWorkflow> for State {
     fn around(&self, world: World) -> EyesAround {
         let source = self.rooms.source.view();
@@ -272,8 +179,9 @@ impl Neighbors<EyesWorkflow> for State {
             source: source.clone(),
             twin_on_s: self.eyes_on_s(World::Twin).filter(|_| shows_twin),
             rig: self.models.of(world).rig().clone(),
-            arm_moves: self.arm_of == world && matches!(self.robot.motion, MotionState::Moving { .. }),
+            arm_moves: self.arm_of == world && self.arm_comes_first(),
             is_watched: self.rooms.drift.is_watching(),
+            drifted: self.drifted().filter(|_| self.shown == world),
             is_corrected: self.models.of(world).has_growth_of_eyes(),
         }
     }

@@ -7,6 +7,7 @@
 
 mod around;
 pub mod command;
+mod entries;
 mod kept;
 mod page;
 #[cfg(test)]

@@ -5,8 +5,8 @@ use jiff::tz::TimeZone;
 use plumbline_report::setup::{self, Setup};
 
 use super::around::TimelineAround;
+use super::entries::in_use;
 use super::view::{EntryKind, Figure, TimelineEntry};
-use super::workflow::in_use;
 
 /// Why the table cannot be made.
 #[derive(Debug, thiserror::Error)]

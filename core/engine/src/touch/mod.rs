@@ -24,7 +24,7 @@ mod standing;
 pub mod store;
 pub mod telling;
 #[cfg(test)]
-mod testing;
+pub(crate) mod testing;
 #[cfg(test)]
 mod tests;
 pub mod view;

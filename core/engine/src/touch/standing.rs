@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use jiff::Timestamp;
 use plumbline_model::touch_plan::Purpose;
 
+use super::run::Phase;
 use super::workflow::TouchWorkflow;
 
 /// How a run of touches stands.
@@ -39,6 +40,11 @@ impl TouchWorkflow {
             contacts: run.progress.records.len(),
             mean_m: self.seen.figures.map(|figures| figures.mean_m),
         })
+    }
+
+    /// Whether a run goes on by itself, the arm before, at or on its way to the next target.
+    pub fn is_touching(&self) -> bool {
+        self.run.as_ref().is_some_and(|run| run.phase == Phase::Working)
     }
 
     /// The place of the screen in use; `None`: not read yet. Inside `None`: the nominal one is.

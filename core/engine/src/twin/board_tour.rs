@@ -1,4 +1,4 @@
-//! The board on its way through places of the twin: it stays at each until the eyes have seen it there.
+//! The board on its way through places of the twin: it stays at each until the eyes are done with it there.
 
 use std::time::{Duration, Instant};
 
@@ -6,15 +6,26 @@ use plumbline_model::frame::{Board, Pose, Robot};
 
 use super::view::BoardTour;
 
-/// While the board is shown at all places it stays at each for this long: long enough to be
-/// found still, sharp and new.
+/// While the board is shown at all places it stays at each for this long, so that people see it there, too.
 const AT_EACH_PLACE: Duration = Duration::from_millis(1600);
-/// Where the machine is slow, it stays until it was looked at so often: a few looks must agree.
-const LOOKS_AT_EACH_PLACE: u64 = 8;
-/// After this it goes on all the same when nobody looks…
+/// Images taken sooner after it was put somewhere may show it where it was before.
+const ON_ITS_WAY: Duration = Duration::from_millis(500);
+/// Where it cannot be captured, it stays until it was looked for so often and for so long…
+const LOOKS_IN_VAIN: u32 = 8;
+const LOOKED_FOR_IN_VAIN: Duration = Duration::from_secs(5);
+/// …after this it goes on all the same when nobody looks…
 pub(super) const NOBODY_LOOKS: Duration = Duration::from_secs(12);
 /// …and after this also when somebody does: the machine is too slow.
 const LONGEST_AT_A_PLACE: Duration = Duration::from_secs(60);
+
+/// One search for the board has ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BoardLook {
+    /// When the images were taken.
+    pub captured_at: Instant,
+    /// Whether nothing more is to be had of it there: it was captured, or is still and sharp where it was before.
+    pub is_done: bool,
+}
 
 /// The way that is under way, and the one that was broken off.
 #[derive(Default)]
@@ -56,14 +67,21 @@ impl BoardTours {
         self.under_way = Some(rest.unwrap_or_else(|| Tour::through(all.to_vec())));
     }
 
-    /// Goes on as time passes and the eyes look.
-    pub fn step(&mut self, now: Instant, looks: u64) -> TourStep {
-        let Some(tour) = self.under_way.as_mut().filter(|tour| tour.is_seen(now, looks)) else {
+    /// The board was looked for.
+    pub fn looked(&mut self, look: BoardLook) {
+        if let Some(tour) = &mut self.under_way {
+            tour.looked(look);
+        }
+    }
+
+    /// Goes on as time passes.
+    pub fn step(&mut self, now: Instant) -> TourStep {
+        let Some(tour) = self.under_way.as_mut().filter(|tour| tour.goes_on(now)) else {
             return TourStep::Stays;
         };
         match tour.places.get(tour.next).copied() {
             Some(robot_from_board) => {
-                (tour.next, tour.held, tour.looks) = (tour.next + 1, Some(now), looks);
+                (tour.next, tour.held, tour.looks, tour.is_done) = (tour.next + 1, Some(now), 0, false);
                 TourStep::Holds(robot_from_board)
             }
             None => {
@@ -93,13 +111,15 @@ struct Tour {
     next: usize,
     /// When it was held at the one before; `None`: at none yet.
     held: Option<Instant>,
-    /// How often the eyes had looked then.
-    looks: u64,
+    /// How often it was looked for since.
+    looks: u32,
+    /// Whether nothing more is to be had of it there.
+    is_done: bool,
 }
 
 impl Tour {
     fn through(places: Vec<Pose<Robot, Board>>) -> Self {
-        Self { places, next: 0, held: None, looks: 0 }
+        Self { places, next: 0, held: None, looks: 0, is_done: false }
     }
 
     /// As it goes on after it was broken off: the board is held once more where it was held last.
@@ -111,17 +131,23 @@ impl Tour {
         BoardTour { place: self.next.max(1), of: self.places.len() }
     }
 
-    /// Whether the board was seen where it is.
-    fn is_seen(&self, now: Instant, looks: u64) -> bool {
+    fn looked(&mut self, look: BoardLook) {
+        if self.held.is_some_and(|held| look.captured_at >= held + ON_ITS_WAY) {
+            self.looks += 1;
+            self.is_done |= look.is_done;
+        }
+    }
+
+    /// Whether it has been where it is for long enough.
+    fn goes_on(&self, now: Instant) -> bool {
         let Some(held) = self.held else { return true };
-        let since = now.saturating_duration_since(held);
-        let looked = looks.saturating_sub(self.looks);
-        let waits_for = match looked {
-            LOOKS_AT_EACH_PLACE.. => AT_EACH_PLACE,
+        let waits_for = match self.looks {
+            _ if self.is_done => AT_EACH_PLACE,
             0 => NOBODY_LOOKS,
+            LOOKS_IN_VAIN.. => LOOKED_FOR_IN_VAIN,
             _ => LONGEST_AT_A_PLACE,
         };
-        since >= waits_for
+        now.saturating_duration_since(held) >= waits_for
     }
 }
 
@@ -130,13 +156,23 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_board_stays_until_it_was_looked_at_often_enough() {
+    fn the_board_stays_until_it_was_captured_however_slow_the_machine_is() {
         let held = Instant::now();
-        let tour = Tour { places: vec![], next: 1, held: Some(held), looks: 100 };
-        let seen = |after_ms: u64, looks: u64| tour.is_seen(held + Duration::from_millis(after_ms), looks);
-        assert!(!seen(500, 200), "not found still yet");
-        assert!(seen(1600, 108));
-        assert!(!seen(30_000, 104) && seen(60_000, 104), "a slow machine has looked four times");
-        assert!(seen(12_000, 100), "nobody looks");
+        let after = |ms: u64| held + Duration::from_millis(ms);
+        let look = |ms: u64, is_done: bool| BoardLook { captured_at: after(ms), is_done };
+        // When it goes on after these looks, ms: it does not one millisecond before.
+        let goes_on_after = |looks: &[BoardLook], ms: u64| {
+            let mut tour = Tour { held: Some(held), next: 1, ..Tour::through(vec![]) };
+            looks.iter().for_each(|look| tour.looked(*look));
+            !tour.goes_on(after(ms - 1)) && tour.goes_on(after(ms))
+        };
+        assert!(goes_on_after(&[look(700, false), look(1300, true)], 1600), "people see it, too");
+        assert!(goes_on_after(&[look(9_000, false), look(40_000, true)], 1600), "a slow machine, at once");
+        let moving: Vec<BoardLook> = (0..4).map(|k| look(1000 + 500 * k, false)).collect();
+        assert!(goes_on_after(&moving, 60_000), "it may be captured yet");
+        let unseen: Vec<BoardLook> = (0..8).map(|k| look(600 + 100 * k, false)).collect();
+        assert!(goes_on_after(&unseen, 5_000), "it is not seen there");
+        assert!(goes_on_after(&[], 12_000), "nobody looks");
+        assert!(goes_on_after(&[look(300, true)], 12_000), "that was the place before");
     }
 }

@@ -1,6 +1,5 @@
 //! The way from the twin's world to the source thread that shows its eyes.
 
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use plumbline_hardware::{
@@ -15,7 +14,6 @@ use crate::ground::watched::MadeUpEyes;
 #[derive(Clone, Default)]
 pub struct TwinEyesPlug {
     scene: Arc<Mutex<Option<SceneSource>>>,
-    looks: Arc<AtomicU64>,
     /// Eyes of a test, in place of the twin's.
     made_up: Option<MadeUpEyes>,
 }
@@ -31,22 +29,13 @@ impl TwinEyesPlug {
         *self.scene.lock().unwrap_or_else(PoisonError::into_inner) = scene;
     }
 
-    /// How often the world was looked at so far, to draw it.
-    pub fn looks(&self) -> u64 {
-        self.looks.load(Ordering::Relaxed)
-    }
-
     fn open(&self) -> Result<Box<dyn StereoSource>, SourceError> {
         if let Some(eyes) = &self.made_up {
             return Ok(eyes());
         }
         let scene = self.scene.lock().unwrap_or_else(PoisonError::into_inner).clone();
         let scene = scene.ok_or(SourceError::TwinNotRunning)?;
-        let looks = self.looks.clone();
-        let look = move || {
-            looks.fetch_add(1, Ordering::Relaxed);
-            scene.newest()
-        };
+        let look = move || scene.newest();
         let eyes = TwinEyes::open(Arc::new(look), TwinEyesOptions::default());
         Ok(Box::new(eyes.map_err(|error| SourceError::Lost { reason: error.to_string() })?))
     }

@@ -7,6 +7,7 @@ mod eyes;
 mod unable;
 pub mod view;
 
+pub use board_tour::BoardLook;
 pub use desk::TwinDesk;
 pub use eyes::TwinEyesPlug;
 pub use unable::TwinUnable;

@@ -14,7 +14,7 @@ pub(super) fn of(slot: &Slot, gate: &Gate) -> Option<String> {
     }
     if slot.silent {
         return Some(match &slot.complaint {
-            None if slot.answers_late() => format!(
+            None if slot.unheard() == Unheard::TooBusy => format!(
                 "servo {id} answers too late and is left out, where its joint is, is not known: {}; it is asked again twice a second",
                 Unheard::TooBusy.advice()
             ),

@@ -10,7 +10,7 @@ use super::command::Motion;
 use super::controller::{Controller, Mode};
 use super::problem;
 use super::reading::{BusStatistics, JointState};
-use super::slot::Slot;
+use super::refusal::Unheard;
 use super::torque::slow_answers;
 
 impl Controller {
@@ -33,7 +33,7 @@ impl Controller {
         let slots = &self.exchange.slots;
         let all_silent = !slots.is_empty() && slots.iter().all(|slot| !slot.in_use());
         if all_silent {
-            let late = slots.iter().any(Slot::answers_late);
+            let late = slots.iter().any(|slot| slot.unheard() == Unheard::TooBusy);
             warnings.insert(0, if late { problem::ALL_LATE } else { problem::ALL_SILENT }.to_owned());
         }
         let strays_per_s = self.rate.strays_per_s();

@@ -19,9 +19,9 @@ const NEAR: Duration = Duration::from_millis(300);
 const KNOWN_FOR: Duration = Duration::from_secs(1);
 /// An answer that came too late is a sign of life for this long: without it the servo is silent.
 const LATE_COUNTS_FOR: Duration = Duration::from_millis(500);
-/// One that is not known and has missed no more questions than this in a row was hardly asked: a program that runs
-/// asks ten times in the time for which an angle is known.
-const HARDLY_ASKED: u32 = 3;
+/// One that was left out is asked twice a second: an answer of it that came too late tells for this long that its power
+/// and cable are there.
+const LOAD_COUNTS_FOR: Duration = Duration::from_secs(2);
 /// Less force than this share of the stall torque is none.
 const NO_FORCE: f64 = 0.02;
 
@@ -175,11 +175,11 @@ impl Slot {
         self.late_at.is_some_and(|at| at.elapsed() < LATE_COUNTS_FOR)
     }
 
-    /// Why it is not heard: one that is hardly asked, because this program stood still, is no more to
-    /// blame than one that answers late.
+    /// Why it is not heard: one that was heard lately, and was asked too seldom since to be left out for its silence, is
+    /// no more to blame than one that answers late. A program that runs would have left it out by now.
     pub fn unheard(&self) -> Unheard {
-        let is_reached_too_seldom = self.in_use() && self.missed <= HARDLY_ASKED;
-        if self.answers_late() || is_reached_too_seldom { Unheard::TooBusy } else { Unheard::Silent }
+        let was_late = self.late_at.is_some_and(|at| at.elapsed() < LOAD_COUNTS_FOR);
+        if self.in_use() || was_late { Unheard::TooBusy } else { Unheard::Silent }
     }
 
     /// Whether its torque is on and it is ours to command.
@@ -317,18 +317,20 @@ mod tests {
     #[test]
     fn a_servo_is_not_blamed_for_a_program_that_stood_still() {
         let stalled = KNOWN_FOR + Duration::from_millis(200);
-        for missed in [0, 1, HARDLY_ASKED] {
+        for missed in [0, 1, 12] {
             let slot = neck(stalled, missed);
             assert!(!slot.is_known());
             assert_eq!(slot.unheard(), Unheard::TooBusy, "missed {missed} times");
         }
-        // Asked again and again, it does not answer.
-        assert_eq!(neck(stalled, 12).unheard(), Unheard::Silent);
-        let mut silent = neck(stalled, 1);
-        silent.silent = true;
+        let mut silent = neck(stalled, 25);
+        silent.fall_silent();
         assert_eq!(silent.unheard(), Unheard::Silent, "it was left out for its silence");
         silent.note_late(1);
         assert_eq!(silent.unheard(), Unheard::TooBusy, "an answer came that nobody waited for any more");
+        silent.late_at = Instant::now().checked_sub(Duration::from_millis(900));
+        assert_eq!(silent.unheard(), Unheard::TooBusy, "it is asked but twice a second");
+        silent.late_at = Instant::now().checked_sub(LOAD_COUNTS_FOR);
+        assert_eq!(silent.unheard(), Unheard::Silent, "nothing has come since");
     }
 
     #[test]

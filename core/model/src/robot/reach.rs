@@ -96,7 +96,7 @@ pub enum Refusal {
     },
     /// The way runs into something.
     #[error(
-        "on the way ({:.0} %) the {a} would meet the {b}: go there by a posture in between", 100.0 * .at_fraction
+        "{} the {a} would meet the {b}: go there by a posture in between", on_the_way(*.at_fraction)
     )]
     Collision {
         /// Where on the way, 0–1.
@@ -108,8 +108,8 @@ pub enum Refusal {
     },
     /// A joint would turn too far on the way.
     #[error(
-        "on the way ({:.0} %) {joint} would turn too far by {:.1}° ({why}): move the joint it depends on first",
-        100.0 * .at_fraction, .by_rad.to_degrees()
+        "{} {joint} would turn {} ({why}): move the joint it depends on first",
+        on_the_way(*.at_fraction), too_far(*.by_rad)
     )]
     BeyondLimit {
         /// Where on the way, 0–1.
@@ -121,6 +121,21 @@ pub enum Refusal {
         /// What is in the way.
         why: String,
     },
+}
+
+/// What would be written as nothing is no number.
+fn on_the_way(at_fraction: f64) -> String {
+    match 100.0 * at_fraction {
+        percent if percent < 0.5 => "where it stands".to_owned(),
+        percent => format!("on the way ({percent:.0} %)"),
+    }
+}
+
+fn too_far(by_rad: f64) -> String {
+    match by_rad.to_degrees() {
+        by_deg if by_deg < 0.05 => "just past its end".to_owned(),
+        by_deg => format!("too far by {by_deg:.1}°"),
+    }
 }
 
 /// Why nothing was planned.
@@ -255,4 +270,23 @@ fn blocked(path: &PathCheck) -> Option<Refusal> {
 fn mm(meters: &f64) -> String {
     let millimeters = meters * 1e3;
     if millimeters < 10.0 { format!("{millimeters:.1}") } else { format!("{millimeters:.0}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Refusal;
+
+    #[test]
+    fn what_would_be_written_as_nothing_is_no_number() {
+        let beyond = |at_fraction: f64, by_deg: f64| {
+            let (joint, why) = ("r_elbow_y".to_owned(), "its end".to_owned());
+            Refusal::BeyondLimit { at_fraction, joint, by_rad: by_deg.to_radians(), why }.to_string()
+        };
+        assert!(
+            beyond(0.5, 2.4).starts_with("on the way (50 %) r_elbow_y would turn too far by 2.4° (its end)")
+        );
+        assert!(
+            beyond(0.0, 0.01).starts_with("where it stands r_elbow_y would turn just past its end (its end)")
+        );
+    }
 }

@@ -31,7 +31,7 @@ pub struct DetectAround {
     pub photographs: bool,
     /// What places rest on, or why there are none.
     pub setup: Result<Arc<LiveSetup>, NoSetup>,
-    /// Whether the arm moves, which needs the processor more.
+    /// Whether the arm moves or a run has it, which needs the processor more.
     pub arm_moves: bool,
 }
 

@@ -135,7 +135,7 @@ fn stale(found: &Accepted, around: &DetectAround) -> Option<String> {
     let behind = now.captured_at.saturating_duration_since(of.captured_at);
     if behind > BEHIND {
         let why = match around.arm_moves {
-            true => "while the arm moves the detector looks once a second at most",
+            true => "while the arm moves or touches the detector looks once a second at most",
             false => "the detector does not keep up",
         };
         return Some(format!("Boxes of {:.1} s before this picture: {why}.", behind.as_secs_f64()));

@@ -29,6 +29,7 @@ use crate::ground::{Asked, Context, LongWork as _, Moment, Nothing, Time, Workfl
 use crate::source::view::{ReplayView, SourceStatus, SourceView};
 
 mod by_itself;
+mod when;
 
 struct Desk {
     room: EyesWorkflow,
@@ -60,6 +61,7 @@ impl Desk {
             rig: default_rig(),
             arm_moves: false,
             is_watched: false,
+            drifted: None,
             is_corrected: false,
         };
         Self {

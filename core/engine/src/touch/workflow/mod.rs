@@ -89,6 +89,16 @@ impl TouchWorkflow {
         Some((run.session.as_path(), run.revision()))
     }
 
+    /// The newest run on disk that was finished and made to learn from, of whatever day.
+    pub fn trained_session(&self) -> Option<&Path> {
+        self.runs.trained.as_ref().map(|run| run.session.as_path())
+    }
+
+    /// Where sessions are kept.
+    pub fn sessions(&self) -> PathBuf {
+        self.folder.join("sessions")
+    }
+
     /// What touches in the run that is under way or shown.
     pub fn finger(&self) -> Option<Finger> {
         self.run.as_ref().map(|run| run.plan.options.finger)

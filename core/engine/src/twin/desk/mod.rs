@@ -17,7 +17,7 @@ use plumbline_twin::{
 };
 
 use self::room::{is_on_screen, lying};
-use super::board_tour::{BoardTours, TourStep};
+use super::board_tour::{BoardLook, BoardTours, TourStep};
 use super::command::TwinCommand;
 use super::eyes::TwinEyesPlug;
 use super::unable::TwinUnable;
@@ -229,6 +229,11 @@ impl TwinDesk {
         }
     }
 
+    /// The eyes have looked for the board.
+    pub fn looked(&mut self, look: BoardLook) {
+        self.tours.looked(look);
+    }
+
     /// Goes on with what takes time.
     pub fn tick(&mut self, now: Instant, _rig: &Rig) {
         if self.twin.as_ref().is_some_and(Twin::has_failed) {
@@ -236,7 +241,7 @@ impl TwinDesk {
         }
         self.truth.look(self.twin.as_ref(), now);
         let Some(twin) = &self.twin else { return };
-        match self.tours.step(now, self.eyes.looks()) {
+        match self.tours.step(now) {
             TourStep::Stays => {}
             TourStep::Holds(robot_from_board) => {
                 twin.send(plumbline_twin::TwinCommand::PlaceBoard { robot_from_board });
