@@ -216,7 +216,9 @@ impl Evidence<'_> {
         else {
             return false;
         };
-        if model.set.iter().all(|&block| block < self.look.effects) {
+        // Where every joint is off by itself, one more that is off is no other thing: it is a class already.
+        let is_of_every_site = library.set.iter().any(|&block| self.look.blocks[block].is_family);
+        if is_of_every_site || model.set.iter().all(|&block| block < self.look.effects) {
             return false;
         }
         let left = |set: &[usize]| field.given(set, &self.look.packed).square_left() - self.look.within.0;
