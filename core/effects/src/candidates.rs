@@ -13,6 +13,9 @@ const MOST_SETS: usize = 8;
 const LEAST_IN_SET: usize = 6;
 /// Places that are no farther apart are one, m.
 const SAME_PLACE_M: f64 = 0.02;
+/// Estimates of fewer places do not tell an eye that rolls from one that turns sideways, nor one that pitches from both that
+/// nod: image points do.
+const ROLL_SHOWS_AT: usize = 3;
 
 impl Effect {
     /// Every effect, at every site and in every shape of a grid, that these rows could show: by
@@ -75,7 +78,7 @@ impl Known {
             arm: !of_arm.is_empty(),
             eyes: !of_eyes.is_empty(),
             watched: of_eyes.iter().any(|row| row.stand.is_some()),
-            watched_places: places(&of_eyes),
+            roll_shows: measurements.has(What::EyePoints) || places(&of_eyes) >= ROLL_SHOWS_AT,
             only_watched: !of_eyes.is_empty() && of_eyes.iter().all(|row| row.stand.is_some()),
             eye_sets: measurements.sets_of_eyes(),
             background: of_eyes.iter().any(|row| row.background_m.is_some()),

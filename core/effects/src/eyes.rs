@@ -3,7 +3,7 @@
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use plumbline_model::robot::{CalibratedAt, DescriptionError, Rig};
 use plumbline_model::stereo::StereoCameras;
-use plumbline_model::{Pixel, Raw};
+use plumbline_model::{CameraModel, Pixel, Raw};
 
 use crate::arm::Arm;
 use crate::observation::Observation;
@@ -39,8 +39,8 @@ pub struct EyesDeviation {
     pub focal_scale: f64,
     /// The eyes stand further apart by this share.
     pub baseline_scale: f64,
-    /// Radial distortion left over: shift of a point in the image by this times the cube of its
-    /// distance from the middle, as a share of half the image's width, px.
+    /// Radial distortion left over, the first power of the lens: shift of a point away from the middle of the image by
+    /// this times the cube of how far off the axis it is, as a share of what that is at half the image's width, px.
     pub distortion_px: f64,
     /// What is matched is not the place itself: shift in the images of both eyes, px.
     pub box_px: [f64; 2],
@@ -199,9 +199,9 @@ impl Eyes {
         let in_right = turned.inverse() * in_right;
         let left = self.cameras.left.project(&in_left.coords).ok()?;
         let right = self.cameras.right.project(&in_right.coords).ok()?;
-        let left = shifted(left, &self.cameras.left, deviation, [0.0; 2]);
+        let left = shifted(left, &in_left.coords, &self.cameras.left, deviation, [0.0; 2]);
         let own = [deviation.right_shift_px[0] - deviation.disparity_px, deviation.right_shift_px[1]];
-        let right = shifted(right, &self.cameras.right, deviation, own);
+        let right = shifted(right, &in_right.coords, &self.cameras.right, deviation, own);
         Some(vec![left.u_px, left.v_px, right.u_px, right.v_px])
     }
 
@@ -232,18 +232,30 @@ impl Eyes {
     }
 }
 
+/// How far off the axis a ray is, as the lens bends it (angle of a fisheye, tangent of a pinhole), as a share of what it
+/// is at half of the image's width beside the middle.
+fn share_of_border(ray: &Vector3<f64>, camera: &plumbline_model::Camera) -> f64 {
+    let half_width = 0.5 * f64::from(camera.width_px);
+    let across = ray.xy().norm();
+    match &camera.model {
+        CameraModel::Fisheye(lens) => across.atan2(ray.z) * lens.fx_px / half_width,
+        CameraModel::Pinhole(lens) => across / ray.z * lens.fx_px / half_width,
+    }
+}
+
 /// A pixel as the deviating camera shows it.
 fn shifted(
     pixel: Pixel<Raw>,
+    ray: &Vector3<f64>,
     camera: &plumbline_model::Camera,
     deviation: &EyesDeviation,
     own: [f64; 2],
 ) -> Pixel<Raw> {
     let middle = camera.model.principal_point();
     let off = (pixel.vector() - middle.vector()) * (1.0 + deviation.focal_scale);
-    let half_width = 0.5 * f64::from(camera.width_px);
-    let share = off.norm() / half_width;
-    let stretched = off + off / half_width * (deviation.distortion_px * share * share);
+    let stretched = off
+        + off.try_normalize(1e-12).unwrap_or_default()
+            * (deviation.distortion_px * share_of_border(ray, camera).powi(3));
     Pixel::new(
         middle.u_px + stretched.x + deviation.box_px[0] + own[0],
         middle.v_px + stretched.y + deviation.box_px[1] + own[1],

@@ -130,6 +130,36 @@ fn a_thing_that_was_moved_by_hand_is_told_and_no_eye_is_blamed() {
     assert!(finding.warnings.iter().any(|words| words.contains("jumped by")), "{:?}", finding.warnings);
 }
 
+/// A centimeter is no more than what the noise does to a look or two, and a mount that turns as it warms would explain
+/// most of it.
+#[test]
+fn a_centimeter_by_hand_in_the_noise_of_a_toy_is_no_mount_that_turns() {
+    let told = (0..12_u32).filter(|seed| {
+        let at_rad = 0.5 * f64::from(*seed);
+        let moved = move |t_s: f64| {
+            let is_after = f64::from(u8::from(t_s > 11.0 * 60.0));
+            [0.01 * at_rad.cos() * is_after, 0.01 * at_rad.sin() * is_after, 0.0]
+        };
+        let finding = found(&log(27, |_| 0.0, |_| 0.0, moved, 2e-3, 300 + u64::from(*seed)));
+        assert_eq!(finding.verdict, Verdict::NoGap, "{seed}: {}", finding.sentence);
+        finding.warnings.iter().any(|words| words.contains("jumped by"))
+    });
+    let told = told.count();
+    println!("{told} of 12 told");
+    assert!(told >= 11, "{told}");
+}
+
+#[test]
+fn an_eye_that_is_loose_and_wobbles_over_minutes_is_told_without_a_name() {
+    for (period_s, seed) in [(260.0, 70), (400.0, 71), (600.0, 72)] {
+        let wobble = move |t_s: f64| 0.004 * (std::f64::consts::TAU * t_s / period_s).sin();
+        let finding = found(&log(27, wobble, |_| 0.0, still, 1e-3, seed));
+        assert_eq!(finding.verdict, Verdict::NotInLibrary, "{period_s} s: {}", finding.sentence);
+        let time = finding.unexplained.depends_on.iter().any(|known| known.on == "time");
+        assert!(time, "{:?}", finding.unexplained);
+    }
+}
+
 /// No law of the library: two times.
 #[test]
 fn a_course_that_is_not_quite_the_librarys_is_still_told() {

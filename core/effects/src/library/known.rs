@@ -17,8 +17,6 @@ const WATCHED_CONSTANTS_S: [f64; 16] = [
     1202.0,
 ];
 const WATCHED_LATE_S: [f64; 5] = [0.0, 30.0, 60.0, 90.0, 120.0];
-/// At fewer places an eye that rolls looks like one that turns sideways.
-const ROLL_SHOWS_AT: usize = 3;
 /// A time law needs rows over this time, s.
 const SHORTEST_SPAN_S: f64 = 60.0;
 /// A joint must be held at least so long for it to creep, s. Repeats that follow each other closely
@@ -40,9 +38,9 @@ pub(crate) struct Known {
     pub(crate) background: bool,
     /// The eyes watched things that stood still.
     pub(crate) watched: bool,
-    /// At how many places.
-    pub(crate) watched_places: usize,
-    /// And nothing else: what is constant there has no name.
+    /// What was seen of them tells an eye that rolls from others.
+    pub(crate) roll_shows: bool,
+    /// They watched nothing else: what is constant there has no name.
     pub(crate) only_watched: bool,
     /// Labels of the sets in which the eyes measured, where an eye may have turned from one to the next.
     pub(crate) eye_sets: Vec<String>,
@@ -111,8 +109,9 @@ impl Known {
                 let ends = [all.first(), all.last()].map(|end| end.copied().unwrap_or(0.0));
                 with_shapes(&effect, &thinned(&all, MOST_MOMENTS), ends)
             }
-            // Elsewhere what is constant would be taken for something that grows.
-            Shape::Growth(_) if self.watched || effect.kind == Kind::EyeYaw => {
+            // Elsewhere what is constant would be taken for something that grows. An image that shifts acts as an eye that
+            // turns: where one of them may grow, so may the other.
+            Shape::Growth(_) if self.watched || matches!(effect.kind, Kind::EyeYaw | Kind::ImageShift) => {
                 let grown = self.grown(&effect);
                 [vec![effect], grown].concat()
             }
@@ -126,7 +125,7 @@ impl Known {
     /// An effect of the eyes with every time law that is tried.
     fn grown(&self, effect: &Effect) -> Vec<Effect> {
         let span_s = span(&self.eye_secs);
-        let is_told = effect.kind != Kind::EyeRoll || self.watched_places >= ROLL_SHOWS_AT;
+        let is_told = effect.kind != Kind::EyeRoll || self.roll_shows;
         if span_s < SHORTEST_SPAN_S || !is_told {
             return vec![];
         }

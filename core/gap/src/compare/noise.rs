@@ -12,7 +12,7 @@ use plumbline_model::decompose;
 
 use super::drift::{Deviation, Drift, drift};
 use super::neighbors::Points;
-use super::structure::{Repeat, Structure, structure};
+use super::structure::{Repeat, Structure, structure, wobble};
 use crate::finding::FloorSource;
 use crate::floor::{Floor, KindFloor, finest};
 use crate::statistics::{ALIKE, median, robust_sd, stepped_sd};
@@ -71,7 +71,14 @@ pub fn floor_of(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> 
             depends = other.or(depends.take());
             repeats
         });
-        let nearby = near_neighbors(measurements, residuals, what);
+        let mut nearby = near_neighbors(measurements, residuals, what);
+        if let Some(wobble) = watched_wobble(measurements, residuals, what) {
+            // Neighbors in time hardly differ by a slow wobble, but by a quick one.
+            let rest = scatter(measurements, residuals, what);
+            let left = rest.iter().zip(&wobble.left).map(|(sd, left)| sd * left.sqrt());
+            nearby.sd.iter_mut().zip(left).for_each(|(sd, left)| *sd = sd.min(left));
+            depends = Some(wobble);
+        }
         let known: Vec<bool> = match &repeats {
             Some(repeats) => {
                 let units = what.coordinates().iter().map(|(_, unit)| *unit);
@@ -216,6 +223,9 @@ fn within_cells(
 /// What repeats of any kind still depend on under a model with these residuals: the largest.
 pub fn structure_of(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> Option<Structure> {
     let of = |what: What| -> Option<Structure> {
+        if let Some(wobble) = watched_wobble(measurements, residuals, what) {
+            return Some(wobble);
+        }
         let (repeats, course) = within_cells(measurements, residuals, what)?;
         let course = course.map(|course| Structure::new("time".to_owned(), course.p_value, course.left));
         let other = structure_within(measurements, residuals, what, repeats.degrees_of_freedom);
@@ -223,6 +233,60 @@ pub fn structure_of(measurements: &Measurements, residuals: &[Option<Vec<f64>>])
     };
     let all = What::ALL.into_iter().filter(|what| measurements.has(*what)).filter_map(of);
     all.max_by(|a, b| a.size_sigmas.total_cmp(&b.size_sigmas))
+}
+
+/// What a wobble over time does to things that were watched: what stood still at one place is one cell.
+fn watched_wobble(
+    measurements: &Measurements,
+    residuals: &[Option<Vec<f64>>],
+    what: What,
+) -> Option<Structure> {
+    let rows = of_stands(measurements, residuals, what);
+    let stands: std::collections::BTreeSet<usize> = rows.iter().map(|row| row.cell).collect();
+    wobble(&rows, rows.len() as f64 - stands.len() as f64)
+}
+
+/// Standard deviation of each coordinate about the mean of what stood still.
+fn scatter(measurements: &Measurements, residuals: &[Option<Vec<f64>>], what: What) -> Vec<f64> {
+    let rows = of_stands(measurements, residuals, what);
+    let of = |c: usize| rows.iter().map(|row| row.off[c].powi(2)).sum::<f64>() / rows.len().max(1) as f64;
+    (0..what.len()).map(|c| of(c).sqrt()).collect()
+}
+
+/// Rows of one kind of the session in which most was watched, less the mean of what stood still at one place.
+fn of_stands(measurements: &Measurements, residuals: &[Option<Vec<f64>>], what: What) -> Vec<Repeat> {
+    let mut sessions = BTreeMap::<usize, Vec<(usize, f64, &Vec<f64>)>>::new();
+    for (row, residual) in measurements.rows.iter().zip(residuals).filter(|(row, _)| row.what == what) {
+        if let (Some(stand), Some(t_secs), Some(residual)) = (row.stand, row.t_secs, residual) {
+            sessions.entry(row.session).or_default().push((stand, t_secs, residual));
+        }
+    }
+    let Some(seen) = sessions.into_values().max_by_key(Vec::len) else { return vec![] };
+    let mut sums = BTreeMap::<usize, (Vec<f64>, f64)>::new();
+    for (stand, _, residual) in &seen {
+        let (sum, count) = sums.entry(*stand).or_insert_with(|| (vec![0.0; residual.len()], 0.0));
+        sum.iter_mut().zip(residual.iter()).for_each(|(sum, value)| *sum += value);
+        *count += 1.0;
+    }
+    // Things that are seen together share what that look is off by: they are one look.
+    let mut looks = BTreeMap::<i64, Vec<(usize, f64, Vec<f64>)>>::new();
+    for (stand, t_secs, residual) in seen {
+        let (sum, count) = &sums[&stand];
+        let off = residual.iter().zip(sum).map(|(value, sum)| value - sum / count).collect();
+        looks.entry((t_secs * 1e3).round() as i64).or_default().push((stand, t_secs, off));
+    }
+    let mut known: Vec<Vec<usize>> = vec![];
+    let one = |together: Vec<(usize, f64, Vec<f64>)>| {
+        let stands: Vec<usize> = together.iter().map(|(stand, ..)| *stand).collect();
+        let cell = known.iter().position(|other| *other == stands).unwrap_or(known.len());
+        if cell == known.len() {
+            known.push(stands);
+        }
+        let mean = |c: usize| together.iter().map(|(.., off)| off[c]).sum::<f64>() / together.len() as f64;
+        let off = (0..what.len()).map(mean).collect();
+        Repeat { cell, when: together[0].1, turned_rad: vec![], temperature_c: None, off }
+    };
+    looks.into_values().map(one).collect()
 }
 
 /// What repeats of one kind depend on, of the session with most of them.

@@ -12,6 +12,9 @@ use crate::statistics::robust_sd;
 /// Full turns of a wobble that are tried at most, and rows that each needs.
 const MOST_TURNS: usize = 60;
 const ROWS_PER_TURN: usize = 6;
+/// The same of a thing that was watched, by halves of a turn; fewer rows say nothing.
+const LOOKS_PER_TURN: usize = 4;
+const FEWEST_LOOKS: usize = 16;
 /// A joint that came from further away than this came all the way from one side, rad.
 const SIDE_RAD: f64 = 0.02;
 /// A covariate that repeats hardly differ in (share of its variance) says nothing.
@@ -75,6 +78,33 @@ pub fn structure(rows: &[Repeat], free: f64, when: &str, joints: &[String]) -> O
     best
 }
 
+/// A wobble over time of things that were watched, beyond doubt: `cell` tells what stood still, and a course that goes
+/// one way is none. `free`: as in [`structure`].
+pub fn wobble(rows: &[Repeat], free: f64) -> Option<Structure> {
+    let width = rows.first()?.off.len();
+    if rows.len() < FEWEST_LOOKS || free < 0.5 * FEWEST_LOOKS as f64 {
+        return None;
+    }
+    let spread = Spread::new(tamed(rows, width), free);
+    let looks = rows.iter().filter(|row| row.cell == rows[0].cell).count();
+    let tried: Vec<Vec<Vec<f64>>> =
+        (2..=2 * looks / LOOKS_PER_TURN).map(|halves| turning(rows, 0.5 * halves as f64)).collect();
+    let fits = tried.len();
+    let of = |columns: &Vec<Vec<f64>>| {
+        let left = spread.fitted_by(&within_cells(rows, columns)?)?;
+        Some((left.p_value(fits), left.shares()))
+    };
+    let (p_value, left) = tried.iter().filter_map(of).min_by(|a, b| a.0.total_cmp(&b.0))?;
+    (p_value <= SIGNIFICANT).then(|| Structure::new("time".to_owned(), p_value, left))
+}
+
+/// So many turns over all rows: sine and cosine.
+fn turning(rows: &[Repeat], turns: f64) -> Vec<Vec<f64>> {
+    let ends = rows.iter().fold((f64::MAX, f64::MIN), |(a, b), row| (a.min(row.when), b.max(row.when)));
+    let phase = |row: &Repeat| std::f64::consts::TAU * turns * (row.when - ends.0) / (ends.1 - ends.0);
+    [f64::sin, f64::cos].map(|of| rows.iter().map(|row| of(phase(row))).collect()).to_vec()
+}
+
 /// Deviations, one row each; what is far out is taken as less far.
 fn tamed(rows: &[Repeat], width: usize) -> DMatrix<f64> {
     let limit: Vec<f64> = (0..width).map(|c| FAR * robust_sd(rows.iter().map(|row| row.off[c]))).collect();
@@ -91,11 +121,7 @@ fn covariates(rows: &[Repeat], when: &str, joints: &[String]) -> Vec<(String, Ve
         rows.iter().fold((f64::MAX, f64::MIN), |(a, b), row| (a.min(row.when), b.max(row.when)));
     if last > first {
         for turns in 1..=MOST_TURNS.min(rows.len() / ROWS_PER_TURN) {
-            let phase =
-                |row: &Repeat| std::f64::consts::TAU * turns as f64 * (row.when - first) / (last - first);
-            let [sines, cosines] =
-                [f64::sin, f64::cos].map(|of| rows.iter().map(|row| of(phase(row))).collect());
-            all.push((when.to_owned(), vec![sines, cosines]));
+            all.push((when.to_owned(), turning(rows, turns as f64)));
         }
     }
     for (j, joint) in joints.iter().enumerate() {

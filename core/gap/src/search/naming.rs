@@ -9,7 +9,7 @@ use super::library::{Library, together};
 use super::look::Look;
 use super::variants::UNKNOWN_CELL;
 use crate::compare::f_tail;
-use crate::finding::{ClassMember, FoundParameter, NamedEffect, Verdict};
+use crate::finding::{ClassMember, FloorSource, FoundParameter, NamedEffect, Verdict};
 use crate::floor::Floor;
 
 /// Names whose odds against the best one are no worse than this cannot be told from it.
@@ -26,6 +26,10 @@ pub(super) const WIDER: f64 = 1.5;
 /// A rival counts as something unknown when it does this to the rows, and this share of all.
 const RIVAL_SIZE: f64 = 0.4;
 const RIVAL_SHARE: f64 = 0.15;
+/// Where the noise is whatever the best model leaves, nothing says that the library leaves more than noise. There a rival
+/// counts when it closes this share of the gap (squares) that the library's best set leaves open, or as much as counts
+/// elsewhere against what it leaves itself.
+const RIVAL_CLOSES: f64 = 0.2;
 /// And only where the library leaves more than noise and dirt would, with this probability.
 const RIVAL_P: f64 = 0.02;
 /// Effects that do more to the rows than this many times the whole gap cancel each other: no name.
@@ -89,12 +93,12 @@ impl Evidence<'_> {
         let of_library = models.iter().find(|model| model.set.iter().all(|&block| block < self.look.effects));
         let (p_value, left) = self.lack_of_fit(of_library.map_or(&top, |model| &model.set));
         let large = (RIVAL_SHARE * self.look.gap()).max(RIVAL_SIZE);
-        let rival: f64 = models
-            .iter()
-            .filter(|_| p_value < RIVAL_P)
-            .filter(|model| self.rival_does(model) > large)
-            .map(|model| model.probability)
-            .sum();
+        let best = self.alone.and_then(|alone| alone.models.first()).or(of_library);
+        let counts = |model: &&Model| match self.floor.source {
+            FloorSource::Fitted => self.closes_more(model, best),
+            _ => p_value < RIVAL_P && self.rival_does(model) > large,
+        };
+        let rival: f64 = models.iter().filter(counts).map(|model| model.probability).sum();
         let vetoed = p_value < VETO_P && left > VETO_SIZE;
         let unknown = rival.max(if vetoed { 0.95 } else { 0.0 }).max(self.white()).min(1.0);
         // Whether or not a rival counts as something unknown, it may stand where an effect belongs: what can
@@ -203,6 +207,25 @@ impl Evidence<'_> {
     fn rival_does(&self, model: &Model) -> f64 {
         let Some(place) = model.set.iter().position(|&block| block >= self.look.effects) else { return 0.0 };
         self.values(&model.set).get(place).map_or(0.0, |(own, _)| self.look.does(model.set[place], own))
+    }
+
+    /// Whether a set with a rival closes enough of the gap that the library's best set leaves open: both against what
+    /// the rival leaves, which is the nearest to the noise that there is.
+    fn closes_more(&self, model: &Model, of_library: Option<&Model>) -> bool {
+        let Some((field, library)) = self.look.fields.get(self.look.likely(self.explored)).zip(of_library)
+        else {
+            return false;
+        };
+        // Where every joint is off by itself, one more that is off is no other thing: it is a class already.
+        let is_of_every_site = library.set.iter().any(|&block| self.look.blocks[block].is_family);
+        if is_of_every_site || model.set.iter().all(|&block| block < self.look.effects) {
+            return false;
+        }
+        let left = |set: &[usize]| field.given(set, &self.look.packed).square_left() - self.look.within.0;
+        let (bare, with) = (left(&[]), left(&model.set));
+        let closes = left(&library.set) - with;
+        let share = closes / (bare - with).max(f64::MIN_POSITIVE);
+        share > RIVAL_CLOSES || share > RIVAL_SHARE.powi(2) && closes > RIVAL_SIZE.powi(2) * with
     }
 
     pub(super) fn of_library(&self, model: &Model) -> Vec<usize> {

@@ -6,7 +6,7 @@ use plumbline_effects::{Assumed, Effect, Present};
 use plumbline_model::JobContext;
 
 use super::linear::Linear;
-use super::weights::weights;
+use super::weights::{sets, weights};
 use crate::error::GapError;
 use crate::floor::Floor;
 
@@ -90,6 +90,7 @@ pub(super) fn refit(
 ) -> Result<Fitted, GapError> {
     let mut assumed = with(start, effects);
     let rows = measurements.rows.len();
+    let sets = sets(measurements);
     let mut fitted = None;
     let mut priors = Priors::of(effects);
     for _ in 0..ROUNDS {
@@ -97,7 +98,7 @@ pub(super) fn refit(
         let columns = linear.lines.ncols() - 1;
         let now = linear.lines.column(columns).clone_owned();
         let misses = linear.misses(rows, &now);
-        let mut own = weights(&misses);
+        let mut own = weights(&misses, &sets);
         let values = usual(&assumed);
         let stands: Vec<f64> = linear.nuisances.iter().map(|nuisance| nuisance.value(&assumed)).collect();
         let mut step = DVector::zeros(columns);
@@ -105,7 +106,7 @@ pub(super) fn refit(
             let Some(next) = solve(&linear, &own, &stands, &values, &mut priors) else { break };
             step = next;
             let left = &now - linear.lines.columns(0, columns) * &step;
-            own = weights(&linear.misses(rows, &left));
+            own = weights(&linear.misses(rows, &left), &sets);
         }
         move_by(measurements, &mut assumed, &linear, &step);
         let still = step.amax() < STILL;
@@ -120,7 +121,7 @@ pub(super) fn refit(
     };
     let linear = Linear::of(measurements, floor, &assumed, &[], context)?;
     fitted.misses = linear.misses(rows, &linear.lines.column(linear.lines.ncols() - 1).clone_owned());
-    fitted.weights = weights(&fitted.misses);
+    fitted.weights = weights(&fitted.misses, &sets);
     Ok(fitted)
 }
 
@@ -216,6 +217,7 @@ pub(super) fn frames(
     context: &dyn JobContext,
 ) -> Result<Assumed, GapError> {
     let rows = measurements.rows.len();
+    let sets = sets(measurements);
     let mut assumed = start.clone();
     for _ in 0..ROUNDS {
         let linear = Linear::of(measurements, floor, &assumed, &[], context)?;
@@ -223,7 +225,7 @@ pub(super) fn frames(
             break;
         }
         let now = linear.lines.column(linear.gauge).clone_owned();
-        let mut own = weights(&linear.misses(rows, &now));
+        let mut own = weights(&linear.misses(rows, &now), &sets);
         let mut step = DVector::zeros(linear.gauge);
         let stands: Vec<f64> = linear.nuisances.iter().map(|nuisance| nuisance.value(&assumed)).collect();
         for _ in 0..4 {
@@ -232,7 +234,7 @@ pub(super) fn frames(
             };
             step = next;
             let left = &now - linear.lines.columns(0, linear.gauge) * &step;
-            own = weights(&linear.misses(rows, &left));
+            own = weights(&linear.misses(rows, &left), &sets);
         }
         let mut bare = Assumed { effects: vec![], ..assumed.clone() };
         move_by(measurements, &mut bare, &linear, &step);

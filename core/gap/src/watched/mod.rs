@@ -5,6 +5,7 @@
 //! grows is the eyes'. A thing that jumps was moved by hand, or an eye was knocked: before and after have a
 //! constant of their own.
 
+mod course;
 mod jump;
 
 use std::collections::{BTreeMap, BTreeSet};

@@ -140,7 +140,7 @@ pub(super) static LENS_DISTORTION: Entry = Entry {
     about: "lens distortion left over",
     meaning: "Some lens distortion is left, growing towards the border of the image.",
     remedy: "Calibrate with the board out to the corners of the image.",
-    parameters: &[parameter("k_px", 1.0)],
+    parameters: &[parameter("k_px", 4.0)],
     site: Site::OfEyes(EyeSite::Both),
     shape: Shape::None,
     shown: |rows| rows.eyes,
