@@ -119,7 +119,7 @@ fn what_was_judged_says_when_and_with_which_eyes() {
 #[test]
 fn what_was_judged_steps_back_once_places_have_moved_or_it_is_old() {
     let moved = good_before(2, Some(2.0), Some([0.016, 0.031, 0.063]));
-    let old = good_before(14, Some(2.0), None);
+    let old = good_before(40, Some(2.0), None);
     for (view, why) in [(moved, "Places have moved by 63.0 mm"), (old, "It was judged a while ago")] {
         let fake = Fake::over(view);
         let window = fake.window(on(Screen::Drift));

@@ -25,11 +25,19 @@ pub(crate) const BOX_SIGMA_PX: f64 = 0.7;
 /// Standard deviation of the height at which a thing on the table is, m: the table may be tilted, the thing
 /// may lean.
 pub const HEIGHT_SIGMA_M: f64 = 0.002;
+/// A box that ends so near to the border of its image is cut off, px.
+const BORDER_PX: f64 = 1.5;
+/// A box that differs from the outline by more than this, px and share, is of another thing, or of a part of it.
+const OTHER_SIZE_PX: f64 = 3.0;
+const OTHER_SIZE: f64 = 0.25;
 /// For differences, m.
 const STEP_M: f64 = 0.001;
 /// It is found when it moves by less, m, or never.
 const STILL_M: f64 = 1e-5;
 const TURNS: usize = 12;
+
+/// Least and largest u and v, raw px.
+type Extent = ([f64; 2], [f64; 2]);
 
 /// A place on the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -122,6 +130,27 @@ impl Boxes<'_> {
         Some((0..x0.len()).map(|i| [slope(x0[i], x1[i]), slope(y0[i], y1[i])]).collect())
     }
 
+    /// Whether the boxes are as large as the outline of the thing standing there, and none of them ends at the border
+    /// of its image: the middle of what is cut off or hidden in part is not that of the thing.
+    pub(crate) fn fit(&self, model: &RobotModel, thing: &Thing, xy_m: Vector2<f64>) -> bool {
+        let Some(extents) = self.extents(model, thing, xy_m, 0.0) else { return false };
+        let mut fit = true;
+        for eye in Eye::BOTH {
+            let (Some(seen_px), Some((low, high))) = (self.boxes_px[eye.index()], extents[eye.index()])
+            else {
+                continue;
+            };
+            let (width_px, height_px) = model.rig().eyes.cameras.camera(eye).size_px();
+            for (k, size_px) in [width_px, height_px].into_iter().enumerate() {
+                let [from_px, to_px] = [seen_px[k], seen_px[k + 2]].map(f64::from);
+                let (is, should) = (to_px - from_px, high[k] - low[k]);
+                let is_whole = from_px > BORDER_PX && to_px < f64::from(size_px) - BORDER_PX;
+                fit &= is_whole && (is - should).abs() < OTHER_SIZE_PX + OTHER_SIZE * should;
+            }
+        }
+        fit
+    }
+
     /// Middles of the boxes less those of the outlines of a thing that stands there, px.
     fn residuals(
         &self,
@@ -130,12 +159,38 @@ impl Boxes<'_> {
         xy_m: Vector2<f64>,
         higher_m: f64,
     ) -> Option<Vec<f64>> {
+        let extents = self.extents(model, thing, xy_m, higher_m)?;
+        let mut residuals = vec![];
+        for eye in Eye::BOTH {
+            let (Some(seen_px), Some((low, high))) = (self.boxes_px[eye.index()], extents[eye.index()])
+            else {
+                continue;
+            };
+            for k in 0..2 {
+                // Edges of boxes count from the corner of a pixel.
+                let seen = 0.5 * (f64::from(seen_px[k]) + f64::from(seen_px[k + 2])) - 0.5;
+                residuals.push(seen - 0.5 * (low[k] + high[k]));
+            }
+        }
+        (!residuals.is_empty()).then_some(residuals)
+    }
+
+    /// Least and largest u and v of the outline of a thing that stands there, raw px, in each eye that has a box.
+    fn extents(
+        &self,
+        model: &RobotModel,
+        thing: &Thing,
+        xy_m: Vector2<f64>,
+        higher_m: f64,
+    ) -> Option<[Option<Extent>; 2]> {
         let stands_on_m = support_m(model, xy_m.x, xy_m.y) + higher_m;
         let robot_from_left = model.robot_from_left(self.posture).isometry;
         let right_from_left = model.rig().eyes.cameras.right_from_left.isometry;
-        let mut residuals = vec![];
+        let mut extents = [None; 2];
         for eye in Eye::BOTH {
-            let Some(seen_px) = self.boxes_px[eye.index()] else { continue };
+            if self.boxes_px[eye.index()].is_none() {
+                continue;
+            }
             let eye_at = match eye {
                 Eye::Left => robot_from_left * Point3::origin(),
                 Eye::Right => robot_from_left * right_from_left.inverse() * Point3::origin(),
@@ -151,13 +206,9 @@ impl Boxes<'_> {
                     }
                 }
             }
-            for k in 0..2 {
-                // Edges of boxes count from the corner of a pixel.
-                let seen = 0.5 * (f64::from(seen_px[k]) + f64::from(seen_px[k + 2])) - 0.5;
-                residuals.push(seen - 0.5 * (low[k] + high[k]));
-            }
+            extents[eye.index()] = Some((low, high));
         }
-        (!residuals.is_empty()).then_some(residuals)
+        Some(extents)
     }
 }
 
@@ -189,13 +240,11 @@ pub(crate) fn boxes_around(model: &RobotModel, thing: &Thing, xy_m: Vector2<f64>
     let posture = model.rig().home();
     let empty =
         Boxes { boxes_px: &[Some([0.0; 4]), Some([0.0; 4])], posture: &posture, under: SeenUnder::default() };
-    // What is left of a box around the origin is the middle of the outline, and its corner.
-    let middles = empty.residuals(model, thing, xy_m, 0.0).expect("seen");
-    let around = |u: f64, v: f64| {
-        let (u, v) = (-u, -v);
-        Some([u - 12.0, v - 11.0, u + 12.0, v + 11.0].map(|at| at as f32))
-    };
-    [around(middles[0], middles[1]), around(middles[2], middles[3])]
+    let extents = empty.extents(model, thing, xy_m, 0.0).expect("seen");
+    // Edges of boxes count from the corner of a pixel.
+    extents.map(|extent| {
+        extent.map(|(low, high)| [low[0], low[1], high[0], high[1]].map(|at| (at + 0.5) as f32))
+    })
 }
 
 #[cfg(test)]

@@ -15,13 +15,16 @@ use crate::things::Thing;
 /// A thing whose middle seems to be this far from where the table says is somewhere else, m, beside
 /// three standard deviations.
 const NOT_ON_TABLE_M: f64 = 0.03;
+/// Where the boxes put a thing this far from where both eyes see it, m, beside three standard deviations, they are of
+/// something else.
+const APART_M: f64 = 0.015;
 /// A line of sight that comes in flatter than this (sine of the angle with the table) says nothing of where it
 /// meets the table.
 const FLATTEST: f64 = 0.1;
 
 /// The place of a thing that seems to stand on the table, by the boxes around its outline and the height of the
 /// table; both eyes put it at `in_left` (left camera, m; covariance in its axes, m²). `None`: the height of the table was
-/// not measured, the thing does not seem to stand on it, or its boxes fit no place there.
+/// not measured, the thing does not seem to stand on it, its boxes fit no place there, or they are of a part of it only.
 pub fn place(
     model: &RobotModel,
     thing: &Thing,
@@ -36,6 +39,10 @@ pub fn place(
         return None;
     }
     let found = boxes.on_table(model, thing, seen_m.xy())?;
+    let apart_m = (found.xy_m - seen_m.xy()).norm();
+    if !boxes.fit(model, thing, found.xy_m) || apart_m > APART_M + 3.0 * flat_sigma_m(&seen.covariance_m2) {
+        return None;
+    }
     let [x, y] = found.xy_m.into();
     let point_m = Vector3::new(x, y, support_m(model, x, y) + 0.5 * thing.height_m);
     let onto_table = onto_table(model, boxes, &point_m)?;
@@ -60,6 +67,11 @@ pub fn over_table_m(
     let off_m = point_m.z - support_m(model, point_m.x, point_m.y) - 0.5 * thing.height_m;
     let sigma_m = covariance_m2[(2, 2)].max(0.0).sqrt();
     (off_m.abs() > NOT_ON_TABLE_M + 3.0 * sigma_m).then_some(off_m)
+}
+
+/// Standard deviation along the table, both directions together, m.
+fn flat_sigma_m(covariance_m2: &Matrix3<f64>) -> f64 {
+    (covariance_m2[(0, 0)] + covariance_m2[(1, 1)]).max(0.0).sqrt()
 }
 
 /// Moves a place along the line of sight until it is as high as it was meant to be. `None`: the line of sight is

@@ -6,8 +6,9 @@ use jiff::Timestamp;
 use plumbline_engine::view::{EyesHealth, EyesView, HealthFigures, JudgedWhen, ProposalHealth};
 use plumbline_widgets::format;
 
-/// What was judged longer ago says nothing of now: eyes that warm up turn within minutes.
-const OLD: Duration = Duration::from_secs(300);
+/// What was judged longer ago says nothing of now. Looks that are taken by themselves come sooner, also where they are
+/// spaced so that they take little of a processor.
+const OLD: Duration = Duration::from_secs(1800);
 
 /// "Judged 14 min ago, with cold eyes."
 pub fn judged(when: &JudgedWhen, now: Timestamp) -> String {

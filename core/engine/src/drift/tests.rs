@@ -159,11 +159,12 @@ fn a_knocked_eye_is_told_once_and_shown_with_its_cost() {
     desk.ask(DriftCommand::Stop);
     assert!(!desk.see(&knocked) && desk.view().course.is_some() && !desk.view().is_watching);
     assert_eq!(desk.view().step, StepState::Done);
-    let (watch, model, newest) = desk.room.newest().expect("what was measured stands");
+    assert!(desk.room.newest(2).is_none(), "other eyes have not moved");
+    let (watch, model, newest) = desk.room.newest(1).expect("what was measured stands");
     assert!(watch == 1 && Arc::ptr_eq(model, &desk.around.model) && newest.off_m[2] > 0.005, "{newest:?}");
     // Another watch begins with nothing moved.
     desk.ask(DriftCommand::Start);
-    assert!(desk.room.newest().is_none());
+    assert!(desk.room.newest(1).is_none());
 }
 
 #[test]

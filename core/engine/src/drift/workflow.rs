@@ -34,8 +34,8 @@ pub struct DriftWorkflow {
     pub(super) watch: Option<Watch>,
     /// What was seen in the watch under way, else in the last one.
     course: Option<Arc<DriftCourse>>,
-    /// The model with which the last watch was told that has ended.
-    told_with: Option<Arc<RobotModel>>,
+    /// The model with which the last watch was told that has ended, and of which source it was.
+    told_with: Option<(Arc<RobotModel>, u64)>,
     failed: Option<String>,
     down: Option<String>,
     pub(super) data_dir: PathBuf,
@@ -60,12 +60,15 @@ impl DriftWorkflow {
     }
 
     /// Which watch it is, counted, with which model it is told, and its newest look, also when it has ended; `None`:
-    /// nothing was seen yet.
-    pub fn newest(&self) -> Option<(u64, &Arc<RobotModel>, &DriftPoint)> {
-        let model = match &self.watch {
-            Some(watch) => &watch.model,
-            None => self.told_with.as_ref()?,
+    /// nothing was seen yet, or it was of another source than the one `opened` counts: other eyes, or these before.
+    pub fn newest(&self, opened: u64) -> Option<(u64, &Arc<RobotModel>, &DriftPoint)> {
+        let (model, watched) = match &self.watch {
+            Some(watch) => (&watch.model, watch.opened),
+            None => self.told_with.as_ref().map(|(model, watched)| (model, *watched))?,
         };
+        if watched != opened {
+            return None;
+        }
         let course = self.course.as_ref().filter(|_| self.retelling.is_none())?;
         Some((self.number, model, course.points.last()?))
     }
@@ -243,7 +246,7 @@ impl Workflow for DriftWorkflow {
             DriftCommand::Stop => {
                 // What is told with another model while it ends is not told any more.
                 let told = self.watch.take().filter(|_| self.retelling.is_none());
-                self.told_with = told.map(|watch| watch.model);
+                self.told_with = told.map(|watch| (watch.model, watch.opened));
                 self.retelling = None;
             }
             DriftCommand::Explain => self.explain(around, context),

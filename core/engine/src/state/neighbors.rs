@@ -164,7 +164,7 @@ impl State {
 
     /// How far places have moved since drift is watched, for whoever judged the eyes.
     fn drifted(&self) -> Option<Drifted> {
-        let (watch, model, newest) = self.rooms.drift.newest()?;
+        let (watch, model, newest) = self.rooms.drift.newest(self.rooms.source.view().opened)?;
         let off_m = [0, 1, 2].map(|row| [newest.along_m[row], newest.across_m[row]]);
         Some(Drifted { watch, model: model.clone(), off_m })
     }

@@ -304,8 +304,8 @@ impl Running<'_> {
         let from = self.body.commanded()?;
         let headed = method::published(method, &self.grasper.knowledge, &chosen.point)?;
         let plan = match self.best_plan(&hands, &chosen, headed.as_ref(), &from) {
-            Err(_) if chosen.standing.lower_m > 0.0 => {
-                chosen.standing.lower_m = 0.0;
+            Err(_) if self.lower_m > 0.0 => {
+                chosen.standing.lower_m -= self.lower_m;
                 self.best_plan(&hands, &chosen, headed.as_ref(), &from)?
             }
             plan => plan?,

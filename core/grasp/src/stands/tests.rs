@@ -93,6 +93,11 @@ fn what_hangs_in_the_air_and_what_stands_on_a_table_that_nobody_measured_stays_w
     assert!(at(&measured, &boxes, standing_m).is_some());
     assert_eq!(at(&model(None), &boxes, standing_m), None);
     assert_eq!(at(&measured, &boxes, standing_m + Vector3::z() * 0.06), None);
+    // Half hidden in both eyes, and cut off by the border of one image.
+    let half = boxes_px.map(|area| area.map(|[x0, y0, x1, y1]| [x0, y0, x1, y0 + 0.4 * (y1 - y0)]));
+    assert_eq!(at(&measured, &Boxes { boxes_px: &half, ..boxes }, standing_m), None);
+    let cut = [boxes_px[0].map(|[_, y0, x1, y1]| [0.0, y0, x1, y1]), boxes_px[1]];
+    assert_eq!(at(&measured, &Boxes { boxes_px: &cut, ..boxes }, standing_m), None);
     let nowhere = Boxes { boxes_px: &[None, None], ..boxes };
     assert_eq!(at(&measured, &nowhere, standing_m), None);
 }
