@@ -4,11 +4,11 @@
 //! seen: near the border of an image by a pixel or two, and a mushroom's is that of its cap, high over the
 //! table. So the outline is what is compared: that around the ellipsoids of which the thing consists,
 //! standing on the table. How high it stands there is known, which tells more of its distance than two eyes
-//! so near to each other.
+//! so near to each other. Toys of a class differ in size, and the size of the boxes says by how much.
 
 use std::f64::consts::TAU;
 
-use nalgebra::{Matrix2, Point3, Vector2, Vector3};
+use nalgebra::{Matrix2, Matrix4, Point3, Vector2, Vector3, Vector4};
 use plumbline_effects::RobotModel;
 use plumbline_effects::robot_model::SeenUnder;
 use plumbline_model::robot::Posture;
@@ -22,6 +22,14 @@ const POINTS: usize = 24;
 /// Standard deviation of the middle of a box along rows and along columns, px: half of what its edges are
 /// off by.
 pub(crate) const BOX_SIGMA_PX: f64 = 0.7;
+/// Standard deviation of the size of a box along rows and along columns, px, both its edges together.
+const SIZE_SIGMA_PX: f64 = 1.4;
+/// How much wider than an outline boxes are drawn on every side, px, alike in both eyes: standard deviation.
+const MARGIN_SIGMA_PX: f64 = 1.0;
+/// How much things of a class differ in size, share: standard deviation.
+const SCALE_SIGMA: f64 = 0.12;
+/// Smaller or larger than known by more it is another thing, share.
+const SCALES: std::ops::RangeInclusive<f64> = 0.5..=2.0;
 /// Standard deviation of the height at which a thing on the table is, m: the table may be tilted, the thing
 /// may lean.
 pub const HEIGHT_SIGMA_M: f64 = 0.002;
@@ -32,6 +40,10 @@ const OTHER_SIZE_PX: f64 = 3.0;
 const OTHER_SIZE: f64 = 0.25;
 /// For differences, m.
 const STEP_M: f64 = 0.001;
+/// See [`STEP_M`].
+const STEP_SCALE: f64 = 0.02;
+/// See [`STEP_M`], px.
+const STEP_PX: f64 = 0.5;
 /// It is found when it moves by less, m, or never.
 const STILL_M: f64 = 1e-5;
 const TURNS: usize = 12;
@@ -44,10 +56,46 @@ type Extent = ([f64; 2], [f64; 2]);
 pub struct OnTable {
     /// x and y of its middle, robot frame, m.
     pub xy_m: Vector2<f64>,
-    /// Covariance by boxes and height, m².
+    /// Covariance by boxes, size and height, m².
     pub covariance_m2: Matrix2<f64>,
     /// How far it moves where what it stands on is higher by [`HEIGHT_SIGMA_M`], m.
     pub by_height_m: Vector2<f64>,
+    /// How large it is, as a share of the size that is known of its class.
+    pub scale: f64,
+    /// Standard deviation of `scale`.
+    pub scale_sigma: f64,
+    /// How far it moves where `scale` is larger by `scale_sigma`, m.
+    pub by_scale_m: Vector2<f64>,
+}
+
+/// What is looked for: where a thing stands, how large it is and how the boxes are drawn.
+#[derive(Clone, Copy, Debug)]
+struct State {
+    xy_m: Vector2<f64>,
+    scale: f64,
+    margin_px: f64,
+}
+
+/// Least squares: normal equations and right side, weighted, in x and y (m), scale and margin (px).
+type Normal = (Matrix4<f64>, Vector4<f64>);
+
+/// A number that was seen less the predicted one, px, and its standard deviation, px.
+type Residual = (f64, f64);
+
+impl State {
+    const fn at(xy_m: Vector2<f64>) -> Self {
+        Self { xy_m, scale: 1.0, margin_px: 0.0 }
+    }
+
+    /// Moved in one of its numbers.
+    fn stepped(mut self, index: usize, by: f64) -> Self {
+        match index {
+            0 | 1 => self.xy_m[index] += by,
+            2 => self.scale += by,
+            _ => self.margin_px += by,
+        }
+        self
+    }
 }
 
 /// Boxes of a thing in both eyes, and the head as it was.
@@ -65,13 +113,18 @@ impl Boxes<'_> {
     /// Where the thing stands, from a place nearby (x and y, m). `None`: no eye sees it, or there is no such
     /// place.
     pub fn on_table(&self, model: &RobotModel, thing: &Thing, near_m: Vector2<f64>) -> Option<OnTable> {
-        let mut xy_m = near_m;
+        let mut state = State::at(near_m);
         for _ in 0..TURNS {
-            let (normal, right) = self.normal(model, thing, xy_m)?;
+            let (normal, right) = self.normal(model, thing, &state)?;
             let step = normal.try_inverse()? * right;
-            xy_m += step;
-            if step.norm() < STILL_M {
-                return self.found(model, thing, xy_m, &normal);
+            for (index, by) in step.iter().enumerate() {
+                state = state.stepped(index, *by);
+            }
+            if !SCALES.contains(&state.scale) {
+                return None;
+            }
+            if step.xy().norm() < STILL_M {
+                return self.found(model, thing, &state, &normal);
             }
         }
         None
@@ -81,59 +134,57 @@ impl Boxes<'_> {
         &self,
         model: &RobotModel,
         thing: &Thing,
-        xy_m: Vector2<f64>,
-        normal: &Matrix2<f64>,
+        state: &State,
+        normal: &Matrix4<f64>,
     ) -> Option<OnTable> {
         let inverse = normal.try_inverse()?;
         // What a wrong height does.
-        let (low, high) =
-            (self.residuals(model, thing, xy_m, 0.0)?, self.residuals(model, thing, xy_m, STEP_M)?);
-        let slopes = self.slopes(model, thing, xy_m)?;
-        let by_height: Vector2<f64> = low
-            .iter()
-            .zip(&high)
-            .zip(&slopes)
-            .map(|((low, high), [x, y])| {
-                Vector2::new(*x, *y) * ((high - low) / STEP_M / BOX_SIGMA_PX.powi(2))
-            })
+        let low = self.residuals(model, thing, state, 0.0)?;
+        let high = self.residuals(model, thing, state, STEP_M)?;
+        let slopes = self.slopes(model, thing, state)?;
+        let by_height: Vector4<f64> = (low.iter().zip(&high).zip(&slopes))
+            .map(|(((low, sigma), (high, _)), slope)| slope * ((high - low) / STEP_M / sigma.powi(2)))
             .sum();
-        let by_height_m = inverse * by_height * HEIGHT_SIGMA_M;
-        let covariance_m2 = inverse + by_height_m * by_height_m.transpose();
-        Some(OnTable { xy_m, covariance_m2, by_height_m })
+        let by_height_m = (inverse * by_height * HEIGHT_SIGMA_M).xy();
+        let covariance_m2 = inverse.fixed_view::<2, 2>(0, 0) + by_height_m * by_height_m.transpose();
+        let scale_sigma = inverse[(2, 2)].max(0.0).sqrt();
+        let by_scale_m = Vector2::new(inverse[(0, 2)], inverse[(1, 2)]) / scale_sigma;
+        let State { xy_m, scale, .. } = *state;
+        Some(OnTable { xy_m, covariance_m2, by_height_m, scale, scale_sigma, by_scale_m })
     }
 
-    /// Normal equations at a place, weighted.
-    fn normal(
-        &self,
-        model: &RobotModel,
-        thing: &Thing,
-        xy_m: Vector2<f64>,
-    ) -> Option<(Matrix2<f64>, Vector2<f64>)> {
-        let residuals = self.residuals(model, thing, xy_m, 0.0)?;
-        let slopes = self.slopes(model, thing, xy_m)?;
-        let weight = BOX_SIGMA_PX.powi(-2);
-        let (mut normal, mut right) = (Matrix2::zeros(), Vector2::zeros());
-        for (residual, [x, y]) in residuals.iter().zip(&slopes) {
-            let slope = Vector2::new(*x, *y);
+    fn normal(&self, model: &RobotModel, thing: &Thing, state: &State) -> Option<Normal> {
+        let residuals = self.residuals(model, thing, state, 0.0)?;
+        let slopes = self.slopes(model, thing, state)?;
+        let prior = Vector4::new(0.0, 0.0, SCALE_SIGMA.powi(-2), MARGIN_SIGMA_PX.powi(-2));
+        let mut normal = Matrix4::from_diagonal(&prior);
+        let mut right = prior.component_mul(&Vector4::new(0.0, 0.0, 1.0 - state.scale, -state.margin_px));
+        for ((residual, sigma), slope) in residuals.iter().zip(&slopes) {
+            let weight = sigma.powi(-2);
             normal += slope * slope.transpose() * weight;
             right += slope * (residual * weight);
         }
         Some((normal, right))
     }
 
-    /// How each predicted number changes with x and with y, px/m.
-    fn slopes(&self, model: &RobotModel, thing: &Thing, xy_m: Vector2<f64>) -> Option<Vec<[f64; 2]>> {
-        let at = |step: Vector2<f64>| self.residuals(model, thing, xy_m + step, 0.0);
-        let (x0, x1) = (at(Vector2::new(-STEP_M, 0.0))?, at(Vector2::new(STEP_M, 0.0))?);
-        let (y0, y1) = (at(Vector2::new(0.0, -STEP_M))?, at(Vector2::new(0.0, STEP_M))?);
-        let slope = |low: f64, high: f64| (low - high) / (2.0 * STEP_M);
-        Some((0..x0.len()).map(|i| [slope(x0[i], x1[i]), slope(y0[i], y1[i])]).collect())
+    /// How each predicted number changes with x and y (px/m), scale (px) and margin.
+    fn slopes(&self, model: &RobotModel, thing: &Thing, state: &State) -> Option<Vec<Vector4<f64>>> {
+        let mut slopes = vec![Vector4::zeros(); self.residuals(model, thing, state, 0.0)?.len()];
+        for (index, step) in [STEP_M, STEP_M, STEP_SCALE, STEP_PX].into_iter().enumerate() {
+            let at = |by: f64| self.residuals(model, thing, &state.stepped(index, by), 0.0);
+            for (slope, ((low, _), (high, _))) in slopes.iter_mut().zip(at(-step)?.into_iter().zip(at(step)?))
+            {
+                slope[index] = (low - high) / (2.0 * step);
+            }
+        }
+        Some(slopes)
     }
 
     /// Whether the boxes are as large as the outline of the thing standing there, and none of them ends at the border
     /// of its image: the middle of what is cut off or hidden in part is not that of the thing.
-    pub(crate) fn fit(&self, model: &RobotModel, thing: &Thing, xy_m: Vector2<f64>) -> bool {
-        let Some(extents) = self.extents(model, thing, xy_m, 0.0) else { return false };
+    pub(crate) fn fit(&self, model: &RobotModel, thing: &Thing, found: &OnTable) -> bool {
+        let state = State { scale: found.scale, ..State::at(found.xy_m) };
+        let Some(extents) = self.extents(model, thing, &state, 0.0) else { return false };
         let mut fit = true;
         for eye in Eye::BOTH {
             let (Some(seen_px), Some((low, high))) = (self.boxes_px[eye.index()], extents[eye.index()])
@@ -151,15 +202,15 @@ impl Boxes<'_> {
         fit
     }
 
-    /// Middles of the boxes less those of the outlines of a thing that stands there, px.
+    /// Middles of the boxes and their sizes less those of the outlines of a thing that stands there.
     fn residuals(
         &self,
         model: &RobotModel,
         thing: &Thing,
-        xy_m: Vector2<f64>,
+        state: &State,
         higher_m: f64,
-    ) -> Option<Vec<f64>> {
-        let extents = self.extents(model, thing, xy_m, higher_m)?;
+    ) -> Option<Vec<Residual>> {
+        let extents = self.extents(model, thing, state, higher_m)?;
         let mut residuals = vec![];
         for eye in Eye::BOTH {
             let (Some(seen_px), Some((low, high))) = (self.boxes_px[eye.index()], extents[eye.index()])
@@ -168,8 +219,10 @@ impl Boxes<'_> {
             };
             for k in 0..2 {
                 // Edges of boxes count from the corner of a pixel.
-                let seen = 0.5 * (f64::from(seen_px[k]) + f64::from(seen_px[k + 2])) - 0.5;
-                residuals.push(seen - 0.5 * (low[k] + high[k]));
+                let [from, to] = [seen_px[k], seen_px[k + 2]].map(|at| f64::from(at) - 0.5);
+                residuals.push((0.5 * (from + to) - 0.5 * (low[k] + high[k]), BOX_SIGMA_PX));
+                let size_px = high[k] - low[k] + 2.0 * state.margin_px;
+                residuals.push((to - from - size_px, SIZE_SIGMA_PX));
             }
         }
         (!residuals.is_empty()).then_some(residuals)
@@ -180,9 +233,10 @@ impl Boxes<'_> {
         &self,
         model: &RobotModel,
         thing: &Thing,
-        xy_m: Vector2<f64>,
+        state: &State,
         higher_m: f64,
     ) -> Option<[Option<Extent>; 2]> {
+        let xy_m = state.xy_m;
         let stands_on_m = support_m(model, xy_m.x, xy_m.y) + higher_m;
         let robot_from_left = model.robot_from_left(self.posture).isometry;
         let right_from_left = model.rig().eyes.cameras.right_from_left.isometry;
@@ -197,7 +251,9 @@ impl Boxes<'_> {
             };
             let [mut low, mut high] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
             for round in thing.rounds {
-                for point in outline(round, &Point3::new(xy_m.x, xy_m.y, stands_on_m), &eye_at)? {
+                for point in
+                    outline(&round.scaled(state.scale), &Point3::new(xy_m.x, xy_m.y, stands_on_m), &eye_at)?
+                {
                     let point = Point::new(point.x, point.y, point.z);
                     let (left, right) = model.project(&point, self.posture, &self.under)?;
                     let Pixel::<Raw> { u_px, v_px, .. } = if eye == Eye::Left { left } else { right };
@@ -240,7 +296,7 @@ pub(crate) fn boxes_around(model: &RobotModel, thing: &Thing, xy_m: Vector2<f64>
     let posture = model.rig().home();
     let empty =
         Boxes { boxes_px: &[Some([0.0; 4]), Some([0.0; 4])], posture: &posture, under: SeenUnder::default() };
-    let extents = empty.extents(model, thing, xy_m, 0.0).expect("seen");
+    let extents = empty.extents(model, thing, &State::at(xy_m), 0.0).expect("seen");
     // Edges of boxes count from the corner of a pixel.
     extents.map(|extent| {
         extent.map(|(low, high)| [low[0], low[1], high[0], high[1]].map(|at| (at + 0.5) as f32))

@@ -53,6 +53,14 @@ const fn thing(
     Thing { class, height_m, width_m, can_be_held, rounds }
 }
 
+impl Round {
+    /// The same of a thing that is larger by a factor.
+    #[must_use]
+    pub fn scaled(&self, scale: f64) -> Self {
+        round(self.width_m * scale, self.from_m * scale, self.to_m * scale)
+    }
+}
+
 impl Thing {
     /// The thing of a class, whatever the case of its letters.
     pub fn of_class(class: &str) -> Option<Self> {

@@ -40,18 +40,18 @@ pub fn place(
     }
     let found = boxes.on_table(model, thing, seen_m.xy())?;
     let apart_m = (found.xy_m - seen_m.xy()).norm();
-    if !boxes.fit(model, thing, found.xy_m) || apart_m > APART_M + 3.0 * flat_sigma_m(&seen.covariance_m2) {
+    if !boxes.fit(model, thing, &found) || apart_m > APART_M + 3.0 * flat_sigma_m(&seen.covariance_m2) {
         return None;
     }
     let [x, y] = found.xy_m.into();
-    let point_m = Vector3::new(x, y, support_m(model, x, y) + 0.5 * thing.height_m);
+    let point_m = Vector3::new(x, y, support_m(model, x, y) + 0.5 * thing.height_m * found.scale);
     let onto_table = onto_table(model, boxes, &point_m)?;
     // What is not known of mount, lenses and effects moves the rays, and where they meet does not matter any
     // more: it is brought along the line of sight to the table. What was read in the images is in the boxes.
     let of_eyes = model.place(in_left, &Matrix3::zeros(), boxes.posture, &boxes.under)?;
     let brought = |covariance_m2: &Matrix3<f64>| onto_table * covariance_m2 * onto_table.transpose();
     let by_mount_m2 = brought(&of_eyes.by_mount_m2);
-    let covariance_m2 = brought(&of_eyes.covariance_m2) + of_outline(&found);
+    let covariance_m2 = brought(&of_eyes.covariance_m2) + of_outline(&found, thing);
     Some(PlaceInRobot { point: Point::new(point_m.x, point_m.y, point_m.z), covariance_m2, by_mount_m2 })
 }
 
@@ -83,11 +83,15 @@ fn onto_table(model: &RobotModel, boxes: &Boxes<'_>, point_m: &Vector3<f64>) -> 
     (down.abs() > FLATTEST).then(|| Matrix3::identity() - sight * up.transpose() / down)
 }
 
-/// Covariance by boxes and height with the height itself, m².
-fn of_outline(found: &OnTable) -> Matrix3<f64> {
-    let by_boxes = found.covariance_m2 - found.by_height_m * found.by_height_m.transpose();
-    let by_height = Vector3::new(found.by_height_m.x, found.by_height_m.y, HEIGHT_SIGMA_M);
-    let mut covariance_m2 = by_height * by_height.transpose();
+/// Covariance by boxes, size and height with the height of the middle itself, m².
+fn of_outline(found: &OnTable, thing: &Thing) -> Matrix3<f64> {
+    let OnTable { by_height_m, by_scale_m, .. } = found;
+    let by_boxes =
+        found.covariance_m2 - by_height_m * by_height_m.transpose() - by_scale_m * by_scale_m.transpose();
+    let by_height = Vector3::new(by_height_m.x, by_height_m.y, HEIGHT_SIGMA_M);
+    let middle_sigma_m = 0.5 * thing.height_m * found.scale_sigma;
+    let by_scale = Vector3::new(by_scale_m.x, by_scale_m.y, middle_sigma_m);
+    let mut covariance_m2 = by_height * by_height.transpose() + by_scale * by_scale.transpose();
     let mut flat = covariance_m2.fixed_view_mut::<2, 2>(0, 0);
     flat += by_boxes;
     covariance_m2
