@@ -76,6 +76,7 @@ impl Running<'_> {
     fn standing(&self, place: &SeenPlace, thing: &Thing, boxes: &Boxes<'_>) -> Result<Chosen, End> {
         let knowledge = &self.grasper.knowledge;
         let (mut point, mut covariance_m2) = (place.point().coords.coords, place.covariance_m2);
+        let mut scale = 1.0;
         if let Some(off_m) = over_table_m(knowledge, thing, place) {
             return Err(End::Refused(format!(
                 "the {} seems to be {:.0} mm {} the table: put it down, or calibrate the eyes and their mount again",
@@ -86,9 +87,11 @@ impl Running<'_> {
         }
         if self.order.method == Method::M5
             && let Some(found) = boxes.on_table(&knowledge.model, thing, point.xy())
+            && boxes.fit(&knowledge.model, thing, &found)
         {
             let support_m = knowledge.support_m(found.xy_m.x, found.xy_m.y);
-            point = Vector3::new(found.xy_m.x, found.xy_m.y, support_m + 0.5 * thing.height_m);
+            scale = found.scale;
+            point = Vector3::new(found.xy_m.x, found.xy_m.y, support_m + 0.5 * thing.height_m * scale);
             // Boxes and height alone. What is not known of the mount of the eyes and of their effects is left
             // out: the hand is then found by the same eyes beside the thing, and what moves both alike does not
             // bring one away from the other, which is all that the sum of both is looked at for (`sure.rs`). Of a
@@ -99,8 +102,8 @@ impl Running<'_> {
         let xy_m = [point.x, point.y];
         let support_m = knowledge.support_m(point.x, point.y);
         // What ends in a point is not pushed against the palm: it would tip over and drag the hand along.
-        let lower_m = self.lower_m - thing.peak_m();
-        let standing = Standing { xy_m, support_m, height_m: thing.height_m, lower_m };
+        let lower_m = self.lower_m - thing.peak_m() * scale;
+        let standing = Standing { xy_m, support_m, height_m: thing.height_m * scale, lower_m };
         Ok(Chosen { point: Point::new(point.x, point.y, point.z), covariance_m2, standing })
     }
 }

@@ -9,7 +9,8 @@ use plumbline_model::{LeftCamera, Point};
 use plumbline_vision::synthetic::Noise;
 
 use super::*;
-use crate::outline::{BOX_SIGMA_PX, boxes_around};
+use crate::outline::tests::{boxes_around, boxes_of_size};
+use crate::outline::{BOX_SIGMA_PX, MARGIN_SIGMA_PX, SCALE_SIGMA, SIZE_SIGMA_PX};
 
 /// A robot whose table was measured.
 fn model(over_table_m: Option<f64>) -> RobotModel {
@@ -102,19 +103,23 @@ fn what_hangs_in_the_air_and_what_stands_on_a_table_that_nobody_measured_stays_w
     assert_eq!(at(&measured, &nowhere, standing_m), None);
 }
 
-/// Boxes, heights and an eye that is turned are off as is stated: errors and statement agree.
+/// Boxes, sizes, heights and an eye that is turned are off as is stated: errors and statement agree.
 #[test]
-fn what_is_stated_holds_for_boxes_heights_and_rays_that_are_off_as_they_say() {
+fn what_is_stated_holds_for_boxes_sizes_heights_and_rays_that_are_off_as_they_say() {
     let model = model(Some(0.002));
     let posture = model.rig().home();
     let mut chi2 = vec![];
     let mut noise = Noise::new(7);
     for (at_m, thing) in crate::PLACES_M.into_iter().zip(Thing::held().cycle()).cycle().take(220) {
         let truly_m = middle_m(&model, &thing, at_m);
-        let mut boxes_px = boxes_around(&model, &thing, Vector2::from(at_m));
+        let scale = 1.0 + SCALE_SIGMA * noise.normal().clamp(-2.0, 2.0);
+        let mut boxes_px = boxes_of_size(&model, &thing, Vector2::from(at_m), scale);
+        let margin = MARGIN_SIGMA_PX * noise.normal();
         for [x0, y0, x1, y1] in boxes_px.iter_mut().flatten() {
             let [across, down] = [0; 2].map(|_| (BOX_SIGMA_PX * noise.normal()) as f32);
-            (*x0, *x1, *y0, *y1) = (*x0 + across, *x1 + across, *y0 + down, *y1 + down);
+            let [wider, higher] = [0; 2].map(|_| (margin + 0.5 * SIZE_SIGMA_PX * noise.normal()) as f32);
+            (*x0, *x1) = (*x0 + across - wider, *x1 + across + wider);
+            (*y0, *y1) = (*y0 + down - higher, *y1 + down + higher);
         }
         let boxes = Boxes { boxes_px: &boxes_px, posture: &posture, under: SeenUnder::default() };
         let along = sight(&model, &truly_m);
