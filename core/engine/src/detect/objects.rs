@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use plumbline_effects::PlaceInRobot;
 use plumbline_grasp::outline::Boxes;
-use plumbline_grasp::stands;
+use plumbline_grasp::stands::{self, Stands};
 use plumbline_grasp::things::Thing;
 use plumbline_model::detection::{ClassIndex, ClassNames, Detection, PixelBox};
 use plumbline_model::{AimedPair, Eye, Pixel, Raw, Rectified, StereoCalibration, StereoFrame};
@@ -141,6 +141,9 @@ fn object_view(
     let name = class_name(names, object.class);
     let stands =
         place.ok().zip(setup.ok()).and_then(|(place, setup)| stands(place, setup, &name, [&left, &right]));
+    let mut doubts = doubts(object, names);
+    doubts.extend(stands.and_then(|stands| other_size(&stands, &name)));
+    let stands = stands.zip(setup.ok()).map(|(stands, setup)| place_view(&stands.place, setup));
     let in_robot = match (place, setup) {
         (_, Err(why)) => Err(why.clone()),
         (Err(why), _) => Err((*why).into()),
@@ -160,25 +163,30 @@ fn object_view(
         stands,
         voted: place.map(|place| place.votes.cells().collect()).unwrap_or_default(),
         leak: place.ok().and_then(leak),
-        doubts: doubts(object, names),
+        doubts,
     }
 }
 
 /// Where it stands on the table, if its shape is known.
-fn stands(
-    place: &Place,
-    setup: &LiveSetup,
-    name: &str,
-    seen: [&Option<SeenBox>; 2],
-) -> Option<ObjectPlaceView> {
+fn stands(place: &Place, setup: &LiveSetup, name: &str, seen: [&Option<SeenBox>; 2]) -> Option<Stands> {
     let boxes_px = seen.map(|seen| {
         let PixelBox { x0_px, y0_px, x1_px, y1_px } = seen.as_ref()?.area;
         Some([x0_px, y0_px, x1_px, y1_px])
     });
     let boxes = Boxes { boxes_px: &boxes_px, posture: &setup.posture, under: setup.seen_under() };
     let Estimate { point, covariance_m2, .. } = &place.middle;
-    let stands = stands::place(&setup.model, &Thing::of_class(name)?, &boxes, point, covariance_m2)?;
-    Some(place_view(&stands, setup))
+    stands::place(&setup.model, &Thing::of_class(name)?, &boxes, point, covariance_m2)
+}
+
+/// That it is no toy as it is known.
+fn other_size(stands: &Stands, name: &str) -> Option<String> {
+    let by = stands.larger_by()?;
+    let (share, size) = (100.0 * by.abs(), if by > 0.0 { "larger" } else { "smaller" });
+    let (sigma, class) = (100.0 * stands.scale_sigma, name.to_lowercase());
+    Some(format!(
+        "It is {share:.0} ± {sigma:.0} % {size} than the {class} that is known: another toy, or something else that \
+         is taken for one. Its place and its height go by the size that is seen."
+    ))
 }
 
 /// Where the middle of an object is by the model in use.

@@ -22,6 +22,26 @@ const APART_M: f64 = 0.015;
 /// meets the table.
 const FLATTEST: f64 = 0.1;
 
+/// A thing of known shape on the table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stands {
+    /// Where its middle is.
+    pub place: PlaceInRobot,
+    /// How large it is, as a share of the size that is known of its class.
+    pub scale: f64,
+    /// Standard deviation of `scale`.
+    pub scale_sigma: f64,
+}
+
+impl Stands {
+    /// By how much it is larger than is known of its class (smaller: negative), as a share; `None`: as large as is known,
+    /// as far as that can be told.
+    pub fn larger_by(&self) -> Option<f64> {
+        let by = self.scale - 1.0;
+        (by.abs() > 2.0 * self.scale_sigma).then_some(by)
+    }
+}
+
 /// The place of a thing that seems to stand on the table, by the boxes around its outline and the height of the
 /// table; both eyes put it at `in_left` (left camera, m; covariance in its axes, m²). `None`: the height of the table was
 /// not measured, the thing does not seem to stand on it, its boxes fit no place there, or they are of a part of it only.
@@ -31,7 +51,7 @@ pub fn place(
     boxes: &Boxes<'_>,
     in_left: &Point<LeftCamera>,
     covariance_m2: &Matrix3<f64>,
-) -> Option<PlaceInRobot> {
+) -> Option<Stands> {
     model.glass_over_table_m()?;
     let seen = model.place(in_left, covariance_m2, boxes.posture, &boxes.under)?;
     let seen_m = seen.point.coords.coords;
@@ -52,7 +72,9 @@ pub fn place(
     let brought = |covariance_m2: &Matrix3<f64>| onto_table * covariance_m2 * onto_table.transpose();
     let by_mount_m2 = brought(&of_eyes.by_mount_m2);
     let covariance_m2 = brought(&of_eyes.covariance_m2) + of_outline(&found, thing);
-    Some(PlaceInRobot { point: Point::new(point_m.x, point_m.y, point_m.z), covariance_m2, by_mount_m2 })
+    let point = Point::new(point_m.x, point_m.y, point_m.z);
+    let place = PlaceInRobot { point, covariance_m2, by_mount_m2 };
+    Some(Stands { place, scale: found.scale, scale_sigma: found.scale_sigma })
 }
 
 /// How far over the table a thing seems to be that does not stand on it (under it: negative), m; `None`: it

@@ -72,6 +72,8 @@ fn a_thing_that_is_seen_too_far_along_the_line_of_sight_is_where_it_stands() {
             let covariance_m2 = turned(&model, covariance_m2);
             let seen = model.place(&in_left, &covariance_m2, &posture, &boxes.under).expect("seen");
             let found = place(&model, &thing, &boxes, &in_left, &covariance_m2).expect("it stands there");
+            assert_eq!(found.larger_by(), None, "{found:?}");
+            let found = found.place;
             let left_m = (found.point.coords.coords - truly_m).norm();
             assert!(left_m < 2e-4, "{thing:?} at {at_m:?}: {left_m} m");
             assert!(found.sigma_m() < 0.6 * seen.sigma_m(), "{} of {} m", found.sigma_m(), seen.sigma_m());
@@ -103,6 +105,26 @@ fn what_hangs_in_the_air_and_what_stands_on_a_table_that_nobody_measured_stays_w
     assert_eq!(at(&measured, &nowhere, standing_m), None);
 }
 
+#[test]
+fn a_toy_of_another_size_says_so_and_its_middle_is_as_high_as_it_is_large() {
+    let model = model(Some(0.002));
+    let posture = model.rig().home();
+    let thing = Thing::of_class("Tomato").expect("known");
+    for (scale, is_told) in [(0.75, true), (0.97, false), (1.0, false), (1.03, false), (1.25, true)] {
+        let boxes_px = boxes_of_size(&model, &thing, Vector2::new(0.3, 0.1), scale);
+        let boxes = Boxes { boxes_px: &boxes_px, posture: &posture, under: SeenUnder::default() };
+        let larger = Thing { height_m: scale * thing.height_m, ..thing };
+        let truly_m = middle_m(&model, &larger, [0.3, 0.1]);
+        let covariance_m2 = Matrix3::identity() * 4e-6;
+        let found = place(&model, &thing, &boxes, &in_left(&model, truly_m), &covariance_m2);
+        let found = found.expect("it stands there");
+        assert_eq!(found.larger_by().map(f64::signum), is_told.then(|| (scale - 1.0).signum()), "{found:?}");
+        let off_m = found.place.point.coords.coords - truly_m;
+        assert!(off_m.norm() < 0.003, "{scale}: {off_m} m");
+        assert!(off_m.norm() < 3.0 * found.place.sigma_m(), "{scale}: {off_m} m");
+    }
+}
+
 /// Boxes, sizes, heights and an eye that is turned are off as is stated: errors and statement agree.
 #[test]
 fn what_is_stated_holds_for_boxes_sizes_heights_and_rays_that_are_off_as_they_say() {
@@ -125,8 +147,9 @@ fn what_is_stated_holds_for_boxes_sizes_heights_and_rays_that_are_off_as_they_sa
         let along = sight(&model, &truly_m);
         let covariance_m2 = along * along.transpose() * 0.005_f64.powi(2);
         let in_left = in_left(&model, truly_m + along * (0.005 * noise.normal()));
-        let found =
-            place(&model, &thing, &boxes, &in_left, &turned(&model, covariance_m2)).expect("it stands there");
+        let found = place(&model, &thing, &boxes, &in_left, &turned(&model, covariance_m2))
+            .expect("it stands there")
+            .place;
         // The table is as high as is thought, so that the height is exact, and one number less is random.
         let error_m = (found.point.coords.coords - truly_m).xy();
         let by_boxes = boxes.on_table(&model, &thing, truly_m.xy()).expect("found");

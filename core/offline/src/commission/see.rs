@@ -73,7 +73,8 @@ impl Seer {
             let boxes_px = [area(Eye::Left, &left), area(Eye::Right, &right)];
             let boxes = Boxes { boxes_px: &boxes_px, posture: &sight.posture, under: seen };
             let stands = thing.and_then(|thing| {
-                stands::place(&self.model, &thing, &boxes, &middle.point, &middle.covariance_m2)
+                let stands = stands::place(&self.model, &thing, &boxes, &middle.point, &middle.covariance_m2);
+                stands.map(|stands| stands.place)
             });
             Some(Found { place: stands.unwrap_or(by_eyes), by_eyes })
         }))
