@@ -75,8 +75,15 @@ pub fn done_in_words(figure: &CommissionFigure) -> String {
             format!("{} in the model: {}", format::count(effects.len(), "effect"), effects.join(", "))
         }
         CommissionFigure::NotInLibrary => "something is missing that no known effect explains".to_owned(),
-        CommissionFigure::Seen { before_m, after_m } => {
+        CommissionFigure::Seen { before_m, after_m } if after_m < before_m => {
             format!("seen {} beside the arm, {} before", format::mm(*after_m), format::mm(*before_m))
+        }
+        CommissionFigure::Seen { before_m, after_m } => {
+            format!(
+                "seen {} beside the arm, no nearer than before ({})",
+                format::mm(*after_m),
+                format::mm(*before_m)
+            )
         }
         CommissionFigure::Missed { mean_m: Some(mean_m), touches } => {
             format!("{touches} new touches miss by {}", format::mm(*mean_m))
