@@ -92,3 +92,16 @@ pub fn done_in_words(figure: &CommissionFigure) -> String {
         CommissionFigure::Held(object) => format!("the {} was held", object.to_lowercase()),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hands_that_are_seen_no_nearer_than_before_are_not_told_as_a_gain() {
+        let said = |before_m, after_m| done_in_words(&CommissionFigure::Seen { before_m, after_m });
+        assert_eq!(said(0.005_77, 0.001_26), "seen 1.26 mm beside the arm, 5.77 mm before");
+        let worse = said(0.001_01, 0.001_26);
+        assert_eq!(worse, "seen 1.26 mm beside the arm, no nearer than before (1.01 mm)");
+    }
+}
