@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use jiff::Timestamp;
 use plumbline_engine::view::{HealthState, RecordingState, SourceStatus};
 use plumbline_engine::{Exported, View};
 
@@ -56,7 +57,11 @@ impl Action {
             Self::JudgeHealth if eyes.in_use.is_none() => Some("no calibration is in use".into()),
             Self::JudgeHealth => when(view.source.status != SourceStatus::None, "no source is open"),
             Self::Accept if eyes.health.is_against_proposal() => {
-                Some("by what the eyes see it is not better than the one in use".into())
+                let is_outdated = eyes.health.when.is_some_and(|when| when.is_outdated(Timestamp::now()));
+                Some(match is_outdated {
+                    true => "what was judged of it does not stand any more: judge it again".into(),
+                    false => "by what the eyes see it is not better than the one in use".into(),
+                })
             }
             Self::Accept | Self::Discard => when(eyes.proposal.is_some(), "nothing is proposed"),
             Self::Export(Exported::InUse, _) => when(eyes.in_use.is_some(), "no calibration is in use"),
