@@ -7,6 +7,7 @@ use plumbline_engine::view::{HealthState, RecordingState, SourceStatus};
 use plumbline_engine::{Exported, View};
 
 use super::Action;
+use crate::operator::words::recording_to_export;
 
 impl Action {
     /// Why it cannot be done now; `None` when it can.
@@ -45,6 +46,12 @@ impl Action {
                 "no twin is connected: of a real robot nobody knows the truth",
             ),
             Self::PlayLastRecording => when(view.recording.last.is_some(), "nothing was recorded yet"),
+            Self::ExportRecording if view.recording.exporting.is_some() => {
+                Some("a recording is being exported".into())
+            }
+            Self::ExportRecording => {
+                when(recording_to_export(view).is_some(), "no recording is open, and none was made")
+            }
             Self::CollectRecording => when(view.source.replay.is_some(), "no recording is open"),
             Self::ExplainDrift if view.gap.searching.is_some() => Some("the gap is being looked for".into()),
             Self::ExplainDrift => view.drift.unexplained.map(Cow::Borrowed),

@@ -7,7 +7,7 @@ use plumbline_engine::view::{
 use plumbline_widgets::format;
 
 use super::sentence::{Guidance, say};
-use crate::operator::words::robot::{move_sentence, moved_name};
+use crate::operator::words::robot::{move_sentence, moved_name, silent_together};
 use crate::operator::{Action, MountAction, RobotAction, Screen};
 
 /// What keeps the robot from being moved; `None` when it is connected and stands.
@@ -37,6 +37,9 @@ fn silent(robot: &RobotView) -> Option<Guidance> {
 
 /// A joint that has to be taken hold of anew, or is not known.
 fn joint_trouble(robot: &RobotView) -> Option<Guidance> {
+    if let Some(silent) = silent_together(robot) {
+        return Some(say(silent).warn());
+    }
     let troubled = |joint: &&plumbline_engine::view::JointView| joint.let_go || joint.no_force;
     let joint = robot
         .joints

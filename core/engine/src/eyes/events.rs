@@ -239,7 +239,7 @@ fn proposal(
         calibration,
         origin,
         difference: assessment.difference,
-        uncertainty: Some(assessment.uncertainty),
+        uncertainty: assessment.uncertainty,
         stated_at_m: STATED_AT_M,
         depth_per_px_m: assessment.depth_per_px_m,
         doubts: assessment.doubts,
