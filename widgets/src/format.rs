@@ -128,10 +128,11 @@ pub fn cm(length_m: f64) -> String {
 
 /// Meters as centimeters with one standard deviation: `1.4 ± 0.2 cm`.
 pub fn cm_with(length_m: f64, sigma_m: f64) -> String {
-    if !(length_m.is_finite() && sigma_m.is_finite()) {
+    if !(length_m.is_finite() && sigma_m.is_finite() && sigma_m != 0.0) {
         return cm(length_m);
     }
-    format!("{} ± {}", fixed(100.0 * length_m, 1), cm(sigma_m))
+    // What is known is never known without error: it is not rounded to nothing.
+    format!("{} ± {}", fixed(100.0 * length_m, 1), cm(sigma_m.abs().max(1e-3)))
 }
 
 /// Meters: `0.450 m`. For distances from the eyes; errors and positions are in [`mm`].
@@ -329,6 +330,8 @@ mod tests {
         assert_eq!(cm(0.0137), "1.4 cm");
         assert_eq!(cm_with(0.0137, 0.002), "1.4 ± 0.2 cm");
         assert_eq!(cm_with(0.0137, f64::NAN), "1.4 cm");
+        assert_eq!(cm_with(0.0137, 0.0), "1.4 cm");
+        assert_eq!(cm_with(0.0137, 2e-4), "1.4 ± 0.1 cm");
         assert_eq!((cm(f64::NAN), cm_with(f64::NAN, 0.1)), (NONE.to_owned(), NONE.to_owned()));
     }
 }

@@ -33,6 +33,7 @@ pub mod residuals;
 pub mod scatter;
 pub mod scene3d;
 pub mod seen;
+pub mod steady;
 pub mod table_map;
 pub mod texture;
 pub mod theme;

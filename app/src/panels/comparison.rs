@@ -26,7 +26,8 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     super::padded(ui, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             if let Some(proposal) = eyes.proposal.as_ref().filter(|proposal| proposal.stale.is_none()) {
-                let against = health::not_offered(eyes).map(|sentence| Verdict { good: false, sentence });
+                let against = health::not_offered(eyes, jiff::Timestamp::now())
+                    .map(|why| Verdict { good: false, sentence: why.sentence });
                 super::verdict_line::show(ui, &against.unwrap_or_else(|| verdict(proposal)));
                 ui.add_space(space::S);
             }

@@ -27,9 +27,11 @@ pub fn show(ui: &mut Ui, view: &View, outbox: &mut Outbox) {
         HealthState::Failed(why) => warning(ui, why),
         HealthState::Judged(health) => judged(ui, health, &view.eyes.health),
     }
-    // What is not offered is said where it would be.
-    let against = view.eyes.health.is_against_proposal();
-    if let Some(said) = view.eyes.health.judged.as_deref().filter(|_| !against).and_then(words::proposed) {
+    // What is not offered is said where it would be, and what does not stand any more is not said.
+    let health = &view.eyes.health;
+    let is_outdated = health.when.is_some_and(|when| when.is_outdated(Timestamp::now()));
+    let stands = health.judged.as_deref().filter(|_| !health.is_against_proposal() && !is_outdated);
+    if let Some(said) = stands.and_then(words::proposed) {
         ui.label(said);
     }
     ui.add_space(space::XS);

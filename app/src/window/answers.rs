@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use plumbline_engine::{
     Command, DetectCommand, DetectorChoice, DriftCommand, EyesCommand, FileLength, GapCommand, GridCommand,
-    GridCorrection, GridSide, LabelsCommand, ModelsCommand, ScoresCommand, SourceCommand, TablesCommand,
-    TimelineCommand, TrialsCommand,
+    GridCorrection, GridSide, LabelsCommand, ModelsCommand, RecordingCommand, ScoresCommand, SourceCommand,
+    TablesCommand, TimelineCommand, TrialsCommand,
 };
 
 use super::PlumblineWindow;
@@ -85,6 +85,9 @@ impl PlumblineWindow {
             Asked::Closed => self.ask = None,
             Asked::Command(command) => {
                 self.ask = None;
+                if let Command::Recording(RecordingCommand::ExportLerobot { folder, .. }) = &command {
+                    self.notices.await_file(folder.clone());
+                }
                 outbox.send(command);
             }
             Asked::HoldAndClose => {

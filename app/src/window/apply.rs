@@ -18,6 +18,7 @@ use super::settings::ThemeChoice;
 use crate::operator::actions::timeline::newest as newest_undo;
 use crate::operator::actions::undo::undo;
 use crate::operator::guidance::guidance;
+use crate::operator::words::recording_to_export;
 use crate::operator::{
     Action, CommissionAction, DetectAction, GapAction, GridAction, LabelsAction, ModelsAction, Outbox,
     Preset, RobotAction, ScoresAction, Screen, TimelineAction, TouchAction, TrialsAction, gap_plan,
@@ -121,6 +122,7 @@ impl PlumblineWindow {
             }
             Action::DeleteAll => self.ask = Some(Ask::DeleteAll { count: self.view.eyes.collected.len() }),
             Action::Import => self.ask_for(ctx, Question::Import),
+            Action::ExportRecording => self.ask = recording_to_export(&self.view).map(Ask::export_lerobot),
             Action::Export(what, format) => self.ask_for(ctx, Question::Export(what, format)),
             Action::SaveWindow => self.ask_for(ctx, Question::SaveWindow),
             Action::Detect(DetectAction::ToggleBoxes) => {

@@ -13,6 +13,7 @@ use plumbline_widgets::theme::{self, space};
 use super::about::About;
 use super::connect::{self, ConnectChoice};
 use super::dialogs::{Answer, Question};
+use super::lerobot::LerobotAsk;
 use super::sheet::{Asked, buttons, sheet, title};
 
 /// An open sheet.
@@ -54,6 +55,8 @@ pub enum Ask {
         /// Separated by commas, as they are being typed.
         classes: String,
     },
+    /// Where a recording is written as a data set, and what was being done in it.
+    ExportLerobot(LerobotAsk),
     /// The name of a posture.
     SavePose {
         /// As it is being typed.
@@ -75,6 +78,11 @@ impl Ask {
         Self::NewLabelSet { folder: String::new(), classes }
     }
 
+    /// Asks where the recording of a session is written to.
+    pub fn export_lerobot(session: PathBuf) -> Self {
+        Self::ExportLerobot(LerobotAsk::of(session))
+    }
+
     /// Draws the sheet.
     pub fn show(&mut self, ctx: &egui::Context, view: &View, escape_pressed: bool) -> Asked {
         let middle = (Align2::CENTER_CENTER, Vec2::ZERO);
@@ -88,6 +96,7 @@ impl Ask {
             Self::LetGo => let_go(ui),
             Self::ShortenAnswers => shorten_answers(ui, view),
             Self::NewLabelSet { folder, classes } => new_label_set(ui, folder, classes),
+            Self::ExportLerobot(ask) => ask.show(ui),
             Self::SavePose { title } => save_pose(ui, title),
         });
         match shown.inner {
@@ -125,7 +134,7 @@ fn answer(question: Question, typed: &[String]) -> Asked {
 }
 
 /// `~/pairs` as a shell would read it.
-fn expand_home(text: &str) -> PathBuf {
+pub(super) fn expand_home(text: &str) -> PathBuf {
     let home = || directories::BaseDirs::new().map(|dirs| dirs.home_dir().to_owned());
     match text.strip_prefix("~/").zip(home()) {
         Some((rest, home)) => home.join(rest),

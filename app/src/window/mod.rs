@@ -25,6 +25,7 @@ mod inspector;
 mod jogging;
 mod lamps;
 mod launch;
+mod lerobot;
 mod log_lines;
 mod log_panel;
 mod manual;

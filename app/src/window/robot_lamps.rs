@@ -11,6 +11,7 @@ use plumbline_widgets::theme::{self, Role, space};
 
 use super::PlumblineWindow;
 use super::lamps::{Then, TopLamp};
+use crate::operator::words::robot as words;
 use crate::operator::{Action, Outbox, RobotAction, Screen};
 
 /// Fewer complete cycles per second than this make motion rough.
@@ -85,13 +86,8 @@ fn connected(robot: &RobotView) -> (String, Health, Option<String>) {
     }
     let Some(rate) = bus.cycles_per_s else { return ("starting".to_owned(), Health::Working(0.5), None) };
     let value = format::hertz(rate);
-    if !bus.missing.is_empty() {
-        let ids = bus.missing.iter().map(u8::to_string).collect::<Vec<_>>().join(", ");
-        return (
-            value,
-            Health::Warning,
-            Some(format!("No answer from servo {ids}: look at cable and supply.")),
-        );
+    if let Some(silent) = words::silent(robot) {
+        return (value, Health::Warning, Some(silent));
     }
     // Load, not a cable: nobody is sent to look at one.
     if let Some(late) = bus.late_answers() {
@@ -148,6 +144,7 @@ fn servos(robot: &RobotView) -> Option<TopLamp> {
         Some(gate) if hottest_c >= gate.warm_c => {
             (Health::Warning, Some(format!("{} gets hot: give it a rest soon.", joint.title)))
         }
+        _ if words::silent_together(robot).is_some() => (Health::Warning, words::silent_together(robot)),
         _ => match robot.joints.iter().find_map(|joint| Some((joint, joint.problem.as_ref()?))) {
             Some((joint, problem)) => (Health::Warning, Some(format!("{}: {problem}", joint.title))),
             None => (Health::Good, None),

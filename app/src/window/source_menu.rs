@@ -31,8 +31,12 @@ pub(super) fn entries(view: &View, recent: &VecDeque<SourceSpec>, ui: &mut Ui, o
     }
     ui.separator();
     let record = if view.recording.is_on() { "Stop recording" } else { "Record" };
-    let recording =
-        [(record, Action::ToggleRecording), ("Play the last recording", Action::PlayLastRecording)];
+    let export = Action::ExportRecording.label();
+    let recording = [
+        (record, Action::ToggleRecording),
+        ("Play the last recording", Action::PlayLastRecording),
+        (export.as_str(), Action::ExportRecording),
+    ];
     for (text, action) in recording {
         let refusal = action.refusal(view);
         let button = Button::new(text).shortcut_text(shortcut_text(ui.ctx(), action).unwrap_or_default());

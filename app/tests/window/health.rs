@@ -206,3 +206,20 @@ fn a_proposal_that_is_better_or_was_not_judged_is_offered() {
         assert_eq!(fake.take_sent(), [Command::from(EyesCommand::Accept)]);
     }
 }
+
+#[test]
+fn a_proposal_that_was_judged_before_places_moved_is_to_be_judged_again() {
+    let HealthState::Judged(health) = judged(0.004, Some((0.02, ProposalHealth::Worse))) else {
+        unreachable!("just made")
+    };
+    let state = HealthState::Judged(health.clone());
+    let at = jiff::Timestamp::now();
+    let when = Some(JudgedWhen { at, eyes_on_min: None, moved_m: Some([0.01, 0.02, 0.04]) });
+    let view = with_health(HealthView { state, judged: Some(health), when, colder_wait_min: None });
+    let fake = Fake::over(view);
+    let mut window = fake.window(on(Screen::Judge));
+    assert!(says(&window, "Places have moved by 40.0 mm since it was judged"));
+    assert!(!shows(&window, "Accept calibration") && !says(&window, "is worse than"));
+    click(&mut window, ASK);
+    assert_eq!(fake.take_sent(), [Command::from(EyesCommand::JudgeHealth)]);
+}

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use plumbline::{Screen, ThemeChoice, WindowSettings};
 use plumbline_engine::view::{
-    BoardTour, CaptureEnded, CollectedPair, EyesView, SourceStatus, SourceView, TwinView,
+    BoardTour, CaptureEnded, CollectedPair, EyesView, SourceStatus, SourceView, TourWaits, TwinView,
 };
 use plumbline_engine::{Command, EyesCommand, RobotCommand, SourceSpec, TwinCommand, View};
 
@@ -94,10 +94,22 @@ fn a_tour_of_the_board_is_counted_and_goes_on_where_it_was_broken_off() {
         twin: Arc::new(twin),
         ..everything()
     };
-    let tour = Some(BoardTour { place: 9, of: 24 });
+    let tour = Some(BoardTour { place: 9, of: 24, waits: None });
     let fake = Fake::over(view(TwinView { board: Some(lying_board()), board_tour: tour, ..twin() }));
     let mut window = fake.window(on(Screen::Collect));
     assert!(says(&window, "The board is at place 9 of 24: 0 pairs captured by themselves."));
+    for (waits, words) in [
+        (TourWaits::Look, "It waits until it is looked for"),
+        (TourWaits::Sight, "It waits until both eyes see it sharp and still"),
+    ] {
+        let tour = Some(BoardTour { place: 9, of: 24, waits: Some(waits) });
+        fake.show(view(TwinView { board: Some(lying_board()), board_tour: tour, ..twin() }));
+        window.run_steps(40);
+        assert!(says(&window, words), "{words}");
+        fake.take_sent();
+        click(&mut window, "Skip this place");
+        assert_eq!(fake.take_sent(), [Command::from(TwinCommand::SkipPlace)]);
+    }
     fake.show(view(TwinView { board: Some(lying_board()), board_places_left: 16, ..twin() }));
     window.run_steps(3);
     assert!(says(&window, "the board was not shown at 16 places yet"));

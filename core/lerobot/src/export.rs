@@ -56,7 +56,8 @@ pub struct Exported {
 /// Writes a data set with one episode into an empty or a new folder.
 ///
 /// # Errors
-/// When the recording cannot be read, has nothing that makes a frame, or the folder cannot be written.
+/// When the recording cannot be read, has nothing that makes a frame, the folder cannot be written, or it is cancelled;
+/// then nothing of it stays.
 pub fn export(
     recording: &Path,
     folder: &Path,
@@ -66,6 +67,31 @@ pub fn export(
     if folder.read_dir().is_ok_and(|mut inside| inside.next().is_some()) {
         return Err(ExportError::NotEmpty(folder.to_owned()));
     }
+    let was_there = folder.is_dir();
+    let exported = write(recording, folder, options, context);
+    if exported.is_err() {
+        take_back(folder, was_there);
+    }
+    exported
+}
+
+/// What was written of a data set that is not whole: whoever tries again finds the folder as it was.
+fn take_back(folder: &Path, was_there: bool) {
+    for part in ["meta", "data"] {
+        // What cannot be taken back is in the way of the next try, which says so.
+        let _ = std::fs::remove_dir_all(folder.join(part));
+    }
+    if !was_there {
+        let _ = std::fs::remove_dir(folder);
+    }
+}
+
+fn write(
+    recording: &Path,
+    folder: &Path,
+    options: &Options<'_>,
+    context: &dyn JobContext,
+) -> Result<Exported, ExportError> {
     let mut opened = Recording::open(recording)?;
     let of = Frames::of(&mut opened)?;
     let Some(first) = of.frames.first().filter(|_| !of.joints.is_empty()) else {

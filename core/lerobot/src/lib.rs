@@ -28,6 +28,7 @@ mod meta;
 mod rows;
 mod statistics;
 mod tables;
+mod words;
 
 pub use error::ExportError;
 pub use export::{Exported, Options, export};

@@ -88,6 +88,15 @@ pub fn place(site: &str) -> String {
     sides.chain(rest).collect::<Vec<_>>().join(" ")
 }
 
+/// With its article inside of a sentence: "the right elbow", but "every joint" and "both eyes".
+pub fn the(whose: &str) -> String {
+    let first = whose.split(' ').next().unwrap_or_default().to_lowercase();
+    match first.as_str() {
+        "every" | "each" | "all" | "both" | "the" => whose.to_owned(),
+        _ => format!("the {whose}"),
+    }
+}
+
 type Known = (&'static str, &'static str, &'static str);
 
 fn with_site(name: &str, known: impl Fn(&Known) -> String, shift: impl Fn(&str) -> String) -> String {
@@ -134,6 +143,15 @@ mod tests {
         for (site, words) in places {
             assert_eq!(place(site), words);
         }
+    }
+
+    #[test]
+    fn what_stands_for_all_has_no_article() {
+        assert_eq!(the("right elbow"), "the right elbow");
+        for whose in ["every joint", "Every joint", "both eyes", "all fingers"] {
+            assert_eq!(the(whose), whose);
+        }
+        assert_eq!(the("everything else"), "the everything else", "whole words alone");
     }
 
     #[test]

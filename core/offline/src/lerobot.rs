@@ -45,6 +45,9 @@ pub struct LerobotReport {
     pub has_places: bool,
     /// Pairs of which that is not known.
     pub without_place: usize,
+    /// The same in sentences for people.
+    #[serde(skip)]
+    pub said: Vec<String>,
 }
 
 /// Writes the data set.
@@ -55,6 +58,7 @@ pub fn lerobot(args: &LerobotArgs, context: &dyn JobContext) -> Result<LerobotRe
     let options = Options { task: &args.task, cameras };
     let exported = export(&args.session.join(FILE), &args.out, &options, context)?;
     Ok(LerobotReport {
+        said: exported.said(),
         out: args.out.clone(),
         frames: exported.frames,
         left_out: exported.left_out,

@@ -61,6 +61,7 @@ const ALL: &[Action] = &[
     Action::ToggleLoop,
     Action::ToggleRecording,
     Action::PlayLastRecording,
+    Action::ExportRecording,
     Action::WatchDrift,
     Action::ExplainDrift,
     Action::ToggleTruth,

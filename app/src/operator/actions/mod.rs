@@ -71,6 +71,8 @@ pub enum Action {
     ToggleRecording,
     /// Plays the recording that was made last.
     PlayLastRecording,
+    /// Writes the recording that is open, else the last one, as a LeRobot data set (asks where to).
+    ExportRecording,
     /// Watches whether places stay where they are, or stops that.
     WatchDrift,
     /// Names what makes the watched places wander.

@@ -68,6 +68,7 @@ impl Action {
             Self::Detect(action) => action.label(),
             Self::ToggleRecording => "Record, or stop recording",
             Self::PlayLastRecording => "Play the last recording",
+            Self::ExportRecording => "Export as LeRobot data set…",
             Self::WatchDrift => "Watch drift, or stop watching",
             Self::ExplainDrift => "Explain what was watched",
             Self::ToggleTruth => "Show the twin's truth, or hide it",

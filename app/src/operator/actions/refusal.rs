@@ -2,10 +2,12 @@
 
 use std::borrow::Cow;
 
+use jiff::Timestamp;
 use plumbline_engine::view::{HealthState, RecordingState, SourceStatus};
 use plumbline_engine::{Exported, View};
 
 use super::Action;
+use crate::operator::words::recording_to_export;
 
 impl Action {
     /// Why it cannot be done now; `None` when it can.
@@ -44,6 +46,12 @@ impl Action {
                 "no twin is connected: of a real robot nobody knows the truth",
             ),
             Self::PlayLastRecording => when(view.recording.last.is_some(), "nothing was recorded yet"),
+            Self::ExportRecording if view.recording.exporting.is_some() => {
+                Some("a recording is being exported".into())
+            }
+            Self::ExportRecording => {
+                when(recording_to_export(view).is_some(), "no recording is open, and none was made")
+            }
             Self::CollectRecording => when(view.source.replay.is_some(), "no recording is open"),
             Self::ExplainDrift if view.gap.searching.is_some() => Some("the gap is being looked for".into()),
             Self::ExplainDrift => view.drift.unexplained.map(Cow::Borrowed),
@@ -56,7 +64,11 @@ impl Action {
             Self::JudgeHealth if eyes.in_use.is_none() => Some("no calibration is in use".into()),
             Self::JudgeHealth => when(view.source.status != SourceStatus::None, "no source is open"),
             Self::Accept if eyes.health.is_against_proposal() => {
-                Some("by what the eyes see it is not better than the one in use".into())
+                let is_outdated = eyes.health.when.is_some_and(|when| when.is_outdated(Timestamp::now()));
+                Some(match is_outdated {
+                    true => "what was judged of it does not stand any more: judge it again".into(),
+                    false => "by what the eyes see it is not better than the one in use".into(),
+                })
             }
             Self::Accept | Self::Discard => when(eyes.proposal.is_some(), "nothing is proposed"),
             Self::Export(Exported::InUse, _) => when(eyes.in_use.is_some(), "no calibration is in use"),

@@ -40,6 +40,8 @@ pub enum RobotAction {
     TourFew,
     /// Goes on with showing it where that was broken off.
     TourRest,
+    /// Shows it at the next place, whatever it waits for where it is.
+    SkipPlace,
     /// Lays the board on the twin's table.
     LayBoard,
     /// Puts the board away.
@@ -89,7 +91,7 @@ fn when(possible: bool, why: &'static str) -> Refusal {
 
 impl RobotAction {
     /// All of them, in the palette's order.
-    pub const ALL: [Self; 20] = [
+    pub const ALL: [Self; 21] = [
         Self::Connect,
         Self::ConnectTwin,
         Self::TwinEyes,
@@ -105,6 +107,7 @@ impl RobotAction {
         Self::TourBoard,
         Self::TourFew,
         Self::TourRest,
+        Self::SkipPlace,
         Self::LayBoard,
         Self::HideBoard,
         Self::WarmUp,
@@ -130,6 +133,7 @@ impl RobotAction {
             Self::TourBoard => "Show the board at all places",
             Self::TourFew => "Show the board at the places that suffice",
             Self::TourRest => "Show the board at the other places",
+            Self::SkipPlace => "Skip this place",
             Self::LayBoard => "Lay the board on the table",
             Self::HideBoard => "Put the board away",
             Self::WarmUp => "Warm the twin's eyes by 10 minutes",
@@ -180,6 +184,10 @@ impl RobotAction {
                 view.twin.running && view.twin.board_places_left > 0,
                 "the board was not on its way through places",
             ),
+            Self::SkipPlace => when(
+                view.twin.running && view.twin.board_tour.is_some(),
+                "the board is not on its way through places",
+            ),
             Self::TwinEyes if matches!(view.source.spec, Some(SourceSpec::Twin)) => {
                 Some("the twin's eyes are open".into())
             }
@@ -205,6 +213,7 @@ impl RobotAction {
             Self::TourBoard => TwinCommand::TourBoard(true).into(),
             Self::TourFew => TwinCommand::TourFew.into(),
             Self::TourRest => TwinCommand::TourRest.into(),
+            Self::SkipPlace => TwinCommand::SkipPlace.into(),
             Self::LayBoard => {
                 let [x_m, y_m] = BOARD_ON_TABLE_M;
                 TwinCommand::LayBoard { x_m, y_m, yaw_rad: BOARD_TURN_RAD }.into()

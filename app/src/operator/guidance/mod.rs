@@ -18,6 +18,7 @@ pub use gap::is_of_choice;
 pub use sentence::Guidance;
 pub use touch::{done_of, minutes, wanted, what_moves};
 
+use jiff::Timestamp;
 use plumbline_engine::View;
 use plumbline_engine::view::{CaptureHint, EyesView, Proposal, SourceStatus};
 use plumbline_widgets::format;
@@ -250,8 +251,8 @@ fn judge(eyes: &EyesView) -> Guidance {
     if let Some(why) = &proposal.stale {
         return say(why.clone()).then(format!("Solve {} again", format::count(count, "pair")), Action::Solve);
     }
-    if let Some(why) = not_offered(eyes) {
-        return say(why).warn().then("Discard the proposal", Action::Discard);
+    if let Some(against) = against(eyes) {
+        return against;
     }
     let verdict = verdict(proposal);
     if !verdict.good {
@@ -266,14 +267,24 @@ fn judge(eyes: &EyesView) -> Guidance {
     }
 }
 
+/// Where the proposal is not offered.
+fn against(eyes: &EyesView) -> Option<Guidance> {
+    let why = not_offered(eyes, Timestamp::now())?;
+    let said = say(why.sentence).warn();
+    Some(match why.may_be_judged_again {
+        true => said.then(Action::JudgeHealth.label(), Action::JudgeHealth),
+        false => said.then("Discard the proposal", Action::Discard),
+    })
+}
+
 fn accept(eyes: &EyesView) -> Guidance {
     match (&eyes.proposal, &eyes.in_use) {
         (Some(proposal), _) if proposal.stale.is_some() => {
             say(proposal.stale.clone().unwrap_or_default()).then("Solve again", Action::Solve)
         }
         (Some(proposal), _) => {
-            if let Some(why) = not_offered(eyes) {
-                return say(why).warn().then("Discard the proposal", Action::Discard);
+            if let Some(against) = against(eyes) {
+                return against;
             }
             let verdict = verdict(proposal);
             if verdict.good {

@@ -1,11 +1,13 @@
 //! What to do next with the robot and with the mount of its eyes.
 
 use plumbline_engine::View;
-use plumbline_engine::view::{Connection, MotionState, RobotView, SourceStatus, StepState};
+use plumbline_engine::view::{
+    CaptureHint, Connection, MotionState, RobotView, SourceStatus, StepState, TourWaits,
+};
 use plumbline_widgets::format;
 
 use super::sentence::{Guidance, say};
-use crate::operator::words::robot::{move_sentence, moved_name};
+use crate::operator::words::robot::{move_sentence, moved_name, silent_together};
 use crate::operator::{Action, MountAction, RobotAction, Screen};
 
 /// What keeps the robot from being moved; `None` when it is connected and stands.
@@ -35,6 +37,9 @@ fn silent(robot: &RobotView) -> Option<Guidance> {
 
 /// A joint that has to be taken hold of anew, or is not known.
 fn joint_trouble(robot: &RobotView) -> Option<Guidance> {
+    if let Some(silent) = silent_together(robot) {
+        return Some(say(silent).warn());
+    }
     let troubled = |joint: &&plumbline_engine::view::JointView| joint.let_go || joint.no_force;
     let joint = robot
         .joints
@@ -174,10 +179,12 @@ pub(super) fn board_on_its_way(view: &View, pairs: usize) -> Option<Guidance> {
             true => format!("{so_far} captured by themselves"),
             false => format!("{so_far} collected, none is captured by itself"),
         };
-        return Some(say(format!(
-            "The board is at place {} of {}: {how}. Esc or space ends it.",
-            tour.place, tour.of
-        )));
+        let at = format!("The board is at place {} of {}: {how}.", tour.place, tour.of);
+        let Some(waits) = tour.waits else { return Some(say(format!("{at} Esc or space ends it."))) };
+        let skip = RobotAction::SkipPlace;
+        return Some(
+            say(format!("{at} It waits {}", waits_for(waits, view))).then(skip.label(), Action::Robot(skip)),
+        );
     }
     // With enough pairs the rest of the places is left to the operator's choice: they can be solved.
     let goes_on = twin.board_places_left > 0 && twin.board.is_some() && pairs < super::ENOUGH_PAIRS;
@@ -186,6 +193,18 @@ pub(super) fn board_on_its_way(view: &View, pairs: usize) -> Option<Guidance> {
         say(format!("{so_far} collected; the board was not shown at {left} yet."))
             .then(RobotAction::TourRest.label(), Action::Robot(RobotAction::TourRest))
     })
+}
+
+/// "until …", with which eye does not see the board there.
+fn waits_for(waits: TourWaits, view: &View) -> String {
+    let until = match waits {
+        TourWaits::Look => "until it is looked for: this computer has much to do.",
+        TourWaits::Sight => "until both eyes see it sharp and still.",
+    };
+    match &view.eyes.hint {
+        Some(hint @ CaptureHint::NotSeen { .. }) => format!("{until} {}", super::hint_text(hint)),
+        _ => until.to_owned(),
+    }
 }
 
 /// With the twin, showing it the board is the first step of calibrating its eyes.

@@ -26,13 +26,10 @@ pub fn short(effect: &NamedEffect) -> String {
 pub fn named(id: &str, site: &str, title: &str) -> String {
     let kind = id.replace('-', " ");
     match title.split_once(": ") {
-        Some((whose, _)) if whose.to_lowercase().starts_with("every ") => {
-            format!("{kind} of {}", lower(whose))
-        }
-        Some((whose, _)) => format!("{kind} of the {}", lower(whose)),
+        Some((whose, _)) => format!("{kind} of {}", parameter_words::the(&lower(whose))),
         None if matches!(site, "" | "screen" | "tip" | "base" | "eyes") => kind,
         None if site == "right" => format!("{kind} of the right eye"),
-        None => format!("{kind} of the {}", parameter_words::place(site)),
+        None => format!("{kind} of {}", parameter_words::the(&parameter_words::place(site))),
     }
 }
 
@@ -101,6 +98,7 @@ mod tests {
         let title = "Right elbow: zero position off";
         assert_eq!(named("joint-zero", "r_elbow_y", title), "joint zero of the right elbow");
         assert_eq!(named("axis-skew", "", "Every joint: axis not square"), "axis skew of every joint");
+        assert_eq!(named("axis-skew", "every_joint", ""), "axis skew of every joint", "also without a title");
         assert_eq!(named("screen-tilt", "screen", "screen tilted or shifted"), "screen tilt");
         let title = "right upper arm: wrong length";
         assert_eq!(named("link-length", "right_upper_arm", title), "link length of the right upper arm");

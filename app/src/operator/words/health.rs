@@ -1,18 +1,12 @@
 //! Whether a calibration still holds, in words.
 
-use std::time::Duration;
-
 use jiff::Timestamp;
 use plumbline_engine::view::{EyesHealth, EyesView, HealthFigures, JudgedWhen, ProposalHealth};
 use plumbline_widgets::format;
 
-/// What was judged longer ago says nothing of now. Looks that are taken by themselves come sooner, also where they are
-/// spaced so that they take little of a processor.
-const OLD: Duration = Duration::from_secs(1800);
-
 /// "Judged 14 min ago, with cold eyes."
 pub fn judged(when: &JudgedWhen, now: Timestamp) -> String {
-    let ago = format::age(age(when, now));
+    let ago = format::age(when.age(now));
     match when.is_cold() {
         Some(true) => format!("Judged {ago}, with cold eyes."),
         Some(false) => format!("Judged {ago}, with warm eyes."),
@@ -28,13 +22,8 @@ pub fn outdated(when: &JudgedWhen, now: Timestamp) -> Option<String> {
             format::mm(moved_m)
         ));
     }
-    (age(when, now) > OLD)
+    when.is_outdated(now)
         .then(|| "It was judged a while ago, and nobody has looked since. Ask again.".to_owned())
-}
-
-fn age(when: &JudgedWhen, now: Timestamp) -> Duration {
-    // A clock that was set back makes nothing younger than new.
-    Duration::try_from(now.duration_since(when.at)).unwrap_or_default()
 }
 
 /// What was said of the calibration in use, where it does not stand any more.
@@ -89,8 +78,24 @@ pub fn proposed(health: &EyesHealth) -> Option<String> {
 }
 
 /// Why the proposal is not offered; `None`: it is, or nobody has judged it.
-pub fn not_offered(eyes: &EyesView) -> Option<String> {
-    eyes.health.judged.as_deref().filter(|_| eyes.health.is_against_proposal()).and_then(proposed)
+pub fn not_offered(eyes: &EyesView, now: Timestamp) -> Option<NotOffered> {
+    let health = eyes.health.judged.as_deref().filter(|_| eyes.health.is_against_proposal())?;
+    let sentence = proposed(health)?;
+    Some(match eyes.health.when.as_ref().and_then(|when| outdated(when, now)) {
+        None => NotOffered { sentence, may_be_judged_again: false },
+        Some(why) => {
+            let was = "The proposed calibration was not better than the one in use.";
+            NotOffered { sentence: format!("{was} {why}"), may_be_judged_again: true }
+        }
+    })
+}
+
+/// Why a proposal is not offered.
+pub struct NotOffered {
+    /// For people.
+    pub sentence: String,
+    /// What was judged of it does not stand any more.
+    pub may_be_judged_again: bool,
 }
 
 /// "0.2 cm near, 0.4 cm in the middle, 0.9 cm far".

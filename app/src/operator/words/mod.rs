@@ -12,9 +12,9 @@ pub mod timeline;
 pub mod trials;
 pub mod truth;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use plumbline_engine::SourceSpec;
+use plumbline_engine::{SourceSpec, View};
 
 /// Reasons of errors begin small, because they often follow a colon.
 pub fn capitalized(text: &str) -> String {
@@ -48,6 +48,15 @@ pub fn source_name(spec: &SourceSpec) -> String {
         SourceSpec::Twin => "the twin's eyes".to_owned(),
         SourceSpec::Cameras { left_index, right_index } => format!("cameras {left_index} and {right_index}"),
     }
+}
+
+/// The session whose recording is exported: the one that is open, else the one that was made last.
+pub fn recording_to_export(view: &View) -> Option<PathBuf> {
+    let open = match &view.source.spec {
+        Some(SourceSpec::Recording { file, .. }) => file.parent().map(Path::to_owned),
+        _ => None,
+    };
+    open.or_else(|| view.recording.last.as_ref().map(|last| last.session.clone()))
 }
 
 /// "14:02", or the day before it when that is not today.

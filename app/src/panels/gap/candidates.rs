@@ -4,7 +4,7 @@ use egui::{ScrollArea, Ui};
 use plumbline_widgets::buttons::choice;
 use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::theme::{self, space};
-use plumbline_widgets::{format, probability};
+use plumbline_widgets::{format, probability, steady};
 
 use super::parts::finding;
 use super::state::Sort;
@@ -38,20 +38,29 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             Sort::Score => candidates.sort_by(|a, b| b.score_sigmas.abs().total_cmp(&a.score_sigmas.abs())),
             Sort::Name => candidates.sort_by(|a, b| a.title.cmp(&b.title)),
         }
+        let list = ui.scope_id().with("candidates");
+        let names = candidates.iter().map(|candidate| (candidate.id.clone(), candidate.site.clone()));
+        let order = steady::in_order(ui, list, names.collect(), cx.state.gap.sort);
+        let place = |candidate: &Candidate| {
+            order.iter().position(|(id, site)| *id == candidate.id && *site == candidate.site)
+        };
+        candidates.sort_by_key(|candidate| place(candidate));
         ui.add_space(space::XS);
-        table(ui, &candidates, &shown.finding.candidates);
+        let area = table(ui, &candidates, &shown.finding.candidates);
+        steady::keep(ui, list, order, area);
     });
 }
 
 const CANDIDATE_ROW: f32 = 20.0;
 
-/// `all` gives names to what a candidate trades against.
-fn table(ui: &mut Ui, candidates: &[&Candidate], all: &[Candidate]) {
+/// `all` gives names to what a candidate trades against. Where its rows are drawn.
+fn table(ui: &mut Ui, candidates: &[&Candidate], all: &[Candidate]) -> egui::Rect {
     let width = ui.available_width();
     let columns = [width - 230.0, 70.0, 60.0, 84.0].map(|w: f32| w.max(50.0));
     let header = ["", "probability", "pull, σ", "the data"];
     candidate_row(ui, columns, header.map(|text| (text.to_owned(), true)), None);
-    ScrollArea::vertical().auto_shrink(false).show_rows(ui, CANDIDATE_ROW, candidates.len(), |ui, shown| {
+    let area = ScrollArea::vertical().auto_shrink(false);
+    let shown = area.show_rows(ui, CANDIDATE_ROW, candidates.len(), |ui, shown| {
         ui.spacing_mut().item_spacing.y = 0.0;
         for candidate in &candidates[shown] {
             let (word, meaning) = words::knowledge(&candidate.knowledge, all);
@@ -65,6 +74,7 @@ fn table(ui: &mut Ui, candidates: &[&Candidate], all: &[Candidate]) {
             candidate_row(ui, columns, cells, Some(format!("{name}. {meaning}")));
         }
     });
+    shown.inner_rect
 }
 
 fn candidate_row(ui: &mut Ui, columns: [f32; 4], cells: [(String, bool); 4], help: Option<String>) {

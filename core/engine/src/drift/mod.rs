@@ -22,4 +22,4 @@ pub use around::{BoardAt, DriftAround};
 pub use grid_room::PlacesResult;
 pub use stage::{DriftInput, DriftOutput, DriftStage};
 pub use unjudged::Unjudged;
-pub use workflow::DriftWorkflow;
+pub use workflow::{DriftWorkflow, Told};

@@ -16,7 +16,7 @@ use plumbline_vision::synthetic::{Plane, Scene, granite_texture};
 use super::cold::counted_twice;
 use super::command::DriftCommand;
 use super::view::DriftView;
-use super::{DriftAround, DriftStage, DriftWorkflow};
+use super::{DriftAround, DriftStage, DriftWorkflow, Told};
 use crate::ground::jobs::list::JobList;
 use crate::ground::notice::Notices;
 use crate::ground::stage::{Skipped, Stage as _, Timed};
@@ -160,11 +160,11 @@ fn a_knocked_eye_is_told_once_and_shown_with_its_cost() {
     assert!(!desk.see(&knocked) && desk.view().course.is_some() && !desk.view().is_watching);
     assert_eq!(desk.view().step, StepState::Done);
     assert!(desk.room.newest(2).is_none(), "other eyes have not moved");
-    let (watch, model, newest) = desk.room.newest(1).expect("what was measured stands");
+    let Some((watch, Told::Newest(model, newest))) = desk.room.newest(1) else { panic!("it stands") };
     assert!(watch == 1 && Arc::ptr_eq(model, &desk.around.model) && newest.off_m[2] > 0.005, "{newest:?}");
     // Another watch begins with nothing moved.
     desk.ask(DriftCommand::Start);
-    assert!(desk.room.newest(1).is_none());
+    assert!(matches!(desk.room.newest(1), Some((2, Told::Nothing))));
 }
 
 #[test]

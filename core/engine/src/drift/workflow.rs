@@ -26,6 +26,17 @@ use crate::robot::RobotControl;
 const CLOCK_WAS_SET: &str =
     "The time since the cameras were switched on was set: watching drift begins anew.";
 
+/// What a watch tells of where places are now.
+#[derive(Clone, Copy, Debug)]
+pub enum Told<'a> {
+    /// It has not looked yet.
+    Nothing,
+    /// What was seen is being told with another model.
+    Anew,
+    /// With which model, and the newest look.
+    Newest(&'a Arc<RobotModel>, &'a DriftPoint),
+}
+
 /// Watching drift. There is one at a time, of what is shown.
 #[derive(Clone, Debug, Default)]
 pub struct DriftWorkflow {
@@ -59,9 +70,9 @@ impl DriftWorkflow {
         self.watch.is_some()
     }
 
-    /// Which watch it is, counted, with which model it is told, and its newest look, also when it has ended; `None`:
-    /// nothing was seen yet, or it was of another source than the one `opened` counts: other eyes, or these before.
-    pub fn newest(&self, opened: u64) -> Option<(u64, &Arc<RobotModel>, &DriftPoint)> {
+    /// Which watch it is, counted, and what it tells, also when it has ended; `None`: there was none, or it was of another
+    /// source than the one `opened` counts: other eyes, or these before.
+    pub fn newest(&self, opened: u64) -> Option<(u64, Told<'_>)> {
         let (model, watched) = match &self.watch {
             Some(watch) => (&watch.model, watch.opened),
             None => self.told_with.as_ref().map(|(model, watched)| (model, *watched))?,
@@ -69,8 +80,13 @@ impl DriftWorkflow {
         if watched != opened {
             return None;
         }
-        let course = self.course.as_ref().filter(|_| self.retelling.is_none())?;
-        Some((self.number, model, course.points.last()?))
+        let newest = self.course.as_ref().and_then(|course| course.points.last());
+        let told = match newest {
+            _ if self.retelling.is_some() => Told::Anew,
+            Some(newest) => Told::Newest(model, newest),
+            None => Told::Nothing,
+        };
+        Some((self.number, told))
     }
 
     /// Whether the board is to be looked for: nothing is remembered yet.

@@ -19,8 +19,8 @@ const NODES: (usize, usize) = (17, 37);
 /// What a calibration means on the table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Assessment {
-    /// One standard deviation of a point on the table.
-    pub uncertainty: TableMap,
+    /// One standard deviation of a point on the table; `None`: the calibration does not say how well it is known.
+    pub uncertainty: Option<TableMap>,
     /// How far a point moves against the calibration in use.
     pub difference: Option<TableMap>,
     /// Change of distance at [`STATED_AT_M`] that moves the match by one pixel, meters.
@@ -47,11 +47,13 @@ pub fn assess(
     })
 }
 
-/// One standard deviation of points on the table: match and parameters.
-pub fn uncertainty_map(calibration: &StereoCalibration, workspace: &Workspace) -> TableMap {
-    over_table(workspace, |point_in_left| {
-        point_sigma_m(&calibration.cameras, calibration.covariance.as_ref(), point_in_left, MATCH_SIGMA_PX)
-    })
+/// One standard deviation of points on the table: match and parameters. `None`: how well the parameters are known was
+/// not said, as by files of other programs; what matching alone leaves open would look too good.
+pub fn uncertainty_map(calibration: &StereoCalibration, workspace: &Workspace) -> Option<TableMap> {
+    let covariance = calibration.covariance.as_ref()?;
+    Some(over_table(workspace, |point_in_left| {
+        point_sigma_m(&calibration.cameras, Some(covariance), point_in_left, MATCH_SIGMA_PX)
+    }))
 }
 
 /// How far a point of the table that `before` sees moves when `after` locates it from the same
@@ -112,8 +114,8 @@ fn doubts(calibration: &StereoCalibration, in_use: Option<&StereoCalibration>) -
 mod tests {
     use super::*;
     use crate::eyes::place::nominal_cameras;
-    use nalgebra::Vector3;
-    use plumbline_model::{ModelKind, Pose, Unattended};
+    use nalgebra::{DMatrix, Vector3};
+    use plumbline_model::{ModelKind, ParameterCovariance, Pose, Unattended};
 
     fn calibration(baseline_m: f64) -> StereoCalibration {
         let mut cameras = nominal_cameras((640, 480), ModelKind::Fisheye);
@@ -153,8 +155,13 @@ mod tests {
     }
 
     #[test]
-    fn far_places_are_less_certain() {
-        let map = uncertainty_map(&calibration(0.07), &Workspace::default());
+    fn far_places_are_less_certain_and_what_nobody_said_is_not_known() {
+        let untold = calibration(0.07);
+        assert!(uncertainty_map(&untold, &Workspace::default()).is_none(), "a file of another program");
+        let mut matrix = DMatrix::zeros(22, 22);
+        matrix[(19, 19)] = 0.0007f64.powi(2);
+        let told = StereoCalibration { covariance: Some(ParameterCovariance { matrix }), ..untold };
+        let map = uncertainty_map(&told, &Workspace::default()).expect("it is said");
         let middle = 18;
         let (near, far) = (map.at(0, middle).expect("seen"), map.at(16, middle).expect("seen"));
         assert!(far > 1.5 * near, "{near} near, {far} far");

@@ -1,11 +1,12 @@
 //! What happens while calibrating the eyes: the overlay sees a board, work ends.
 
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use plumbline_model::{StereoFrame, counted};
 
 use super::assess::{Assessment, STATED_AT_M};
+use super::clock::is_live;
 use super::collection::Collection;
 use super::coverage::Novelty;
 use super::look::Look;
@@ -18,14 +19,19 @@ use crate::ground::notice::NoticeLevel;
 
 /// That a pair was captured is shown for this long.
 const SHOW_CAPTURED: Duration = Duration::from_millis(1200);
+/// What a look said of eyes that deliver is shown for this long; a busy machine looks seldom.
+const HINT_LASTS: Duration = Duration::from_secs(10);
 
 impl EyesWorkflow {
     /// Takes a look at what the overlay saw: says what capturing waits for, and captures if
     /// that is switched on.
     pub fn look(&mut self, look: Look, around: &EyesAround, context: &mut Context<'_>) {
+        // What was said of the look before says nothing of this one.
+        self.is_done_with_board = false;
         if look.board != *self.board() {
-            return;
+            return self.hint = None;
         }
+        self.hint_of = around.source.opened;
         let size_px = look.frame.left.dimensions();
         self.set_image_size(size_px);
         self.refresh();
@@ -36,8 +42,9 @@ impl EyesWorkflow {
         }
         self.last_look = Some(look.clone());
         let hint = self.judge(&look, size_px, around);
+        self.is_done_with_board = matches!(hint, CaptureHint::Ready | CaptureHint::NothingNew);
         if hint == CaptureHint::Ready && self.auto_capture && self.busy.capturing.is_none() {
-            self.capture_look(look, around, context);
+            self.is_done_with_board = self.capture_look(look, around, context);
             return;
         }
         let captured_lately = self
@@ -49,10 +56,19 @@ impl EyesWorkflow {
         }
     }
 
-    /// Whether nothing more is to be had of the board where it is: it was captured, could be, or has been there before.
+    /// Whether by the newest look nothing more is to be had of the board where it is: it was captured, could be, or has
+    /// been there before.
     pub fn is_done_with_board(&self) -> bool {
-        use CaptureHint::{Captured, NothingNew, Ready};
-        matches!(self.hint, Some(Captured { .. } | NothingNew | Ready))
+        self.is_done_with_board
+    }
+
+    /// What capturing waits for, as far as that is of what the eyes see now: of another source, or where nobody has
+    /// looked for a while, it says nothing.
+    pub(super) fn shown_hint(&self, around: &EyesAround, now: Instant) -> Option<CaptureHint> {
+        let looked_at = self.last_look.as_ref().map(|look| look.frame.stamp.captured_at);
+        let is_old = looked_at.is_none_or(|at| now.saturating_duration_since(at) > HINT_LASTS);
+        let is_stale = self.hint_of != around.source.opened || is_live(&around.source) && is_old;
+        self.hint.clone().filter(|_| !is_stale)
     }
 
     fn judge(&mut self, look: &Look, size_px: (u32, u32), around: &EyesAround) -> CaptureHint {
@@ -77,15 +93,19 @@ impl EyesWorkflow {
         })
     }
 
-    fn capture_look(&mut self, look: Look, around: &EyesAround, context: &mut Context<'_>) {
+    /// Whether it is collected now.
+    fn capture_look(&mut self, look: Look, around: &EyesAround, context: &mut Context<'_>) -> bool {
         let name = look.frame.name.clone().unwrap_or_else(|| self.collection.next_name());
         let sizes_px = [look.frame.left.dimensions(), look.frame.right.dimensions()];
         self.captured_at = Some(look.frame.stamp.captured_at);
         let pair = CollectedPair { taken: taken(&look.frame, around), ..pair_of(&look, name) };
-        if !self.add(pair, &look.frame, sizes_px, context) {
+        let is_collected = self.add(pair, &look.frame, sizes_px, context);
+        if !is_collected {
             // Saying it once per look would flood the operator.
             self.auto_capture = false;
+            self.hint = None;
         }
+        is_collected
     }
 
     /// Adds a pair; whether it is collected now.
@@ -219,7 +239,7 @@ fn proposal(
         calibration,
         origin,
         difference: assessment.difference,
-        uncertainty: Some(assessment.uncertainty),
+        uncertainty: assessment.uncertainty,
         stated_at_m: STATED_AT_M,
         depth_per_px_m: assessment.depth_per_px_m,
         doubts: assessment.doubts,

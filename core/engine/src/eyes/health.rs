@@ -5,10 +5,11 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use jiff::Timestamp;
-use plumbline_model::{StereoCalibration, StereoFrame};
+use plumbline_model::StereoFrame;
 
 use super::health_by_itself::ByItself;
-use super::view::{Drifted, EyesHealth, HealthState, JudgedWhen};
+use super::health_judged::{Ask, Gathering, Judged, Judging, Of, Then};
+use super::view::{EyesHealth, HealthState};
 use super::work::{Context, EyesWork, Health, HealthEnded, Pictures};
 use super::workflow::{EyesAround, EyesWorkflow};
 use crate::ground::jobs::JobId;
@@ -27,68 +28,6 @@ const ANSWERED_WITHIN: Duration = Duration::from_secs(10);
 /// Told where nothing came of it in time.
 const NO_TIME: &str = "Not enough was seen in ten seconds, because this computer has too much to do: close other \
      programs, or wait until the work in the bottom line has ended, and ask again.";
-
-/// When it was asked, and whether nobody did.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Ask {
-    at: Instant,
-    pub by_itself: bool,
-}
-
-/// Which calibrations are judged.
-#[derive(Clone, Debug)]
-pub(super) struct Of {
-    pub in_use: Arc<StereoCalibration>,
-    pub proposed: Option<Arc<StereoCalibration>>,
-}
-
-impl Of {
-    pub(super) fn is(&self, other: &Self) -> bool {
-        let same = |a: &Arc<StereoCalibration>, b: &Arc<StereoCalibration>| Arc::ptr_eq(a, b);
-        let proposed = match (&self.proposed, &other.proposed) {
-            (Some(a), Some(b)) => same(a, b),
-            (a, b) => a.is_none() && b.is_none(),
-        };
-        same(&self.in_use, &other.in_use) && proposed
-    }
-}
-
-/// Pairs that are being gathered.
-#[derive(Clone, Debug)]
-pub(super) struct Gathering {
-    pub ask: Ask,
-    /// Of which source, counted.
-    opened: u64,
-    pub pairs: Vec<Pictures>,
-    due: Instant,
-}
-
-/// Work that judges.
-#[derive(Clone, Debug)]
-pub(super) struct Judging {
-    job: JobId,
-    of: Of,
-    pub ask: Ask,
-    since: Instant,
-}
-
-/// What was judged, of what, and how things stood then.
-#[derive(Clone, Debug)]
-pub(super) struct Judged {
-    pub of: Of,
-    pub health: Arc<EyesHealth>,
-    at: Timestamp,
-    eyes_on_min: Option<f64>,
-    drifted: Option<Drifted>,
-}
-
-impl Judged {
-    /// When that was, and what has come since.
-    pub fn when(&self, around: &EyesAround) -> JudgedWhen {
-        let moved_m = around.drifted.as_ref().and_then(|now| now.since(self.drifted.as_ref()));
-        JudgedWhen { at: self.at, eyes_on_min: self.eyes_on_min, moved_m }
-    }
-}
 
 /// How far it is, and what was judged last.
 #[derive(Clone, Debug, Default)]
@@ -192,7 +131,7 @@ impl EyesWorkflow {
         }
         if let Some(Gathering { pairs, ask, .. }) = self.health.gathering.take() {
             self.judge_pairs(pairs, ask, around, context);
-        } else if let Some(Judging { job, of, ask, since }) = self.health.judging.take() {
+        } else if let Some(Judging { job, of, ask, since, .. }) = self.health.judging.take() {
             context.cancel(job);
             self.rest_since(since, context.time.instant);
             self.put_off(context.time.instant);
@@ -226,7 +165,7 @@ impl EyesWorkflow {
         around: &EyesAround,
         context: &mut Context<'_>,
     ) {
-        let Some(of) = self.to_be_judged() else { return };
+        let Some(of) = self.to_be_judged(around) else { return };
         let work = Health {
             pairs,
             in_use: of.in_use.clone(),
@@ -237,14 +176,16 @@ impl EyesWorkflow {
         let work = EyesWork::Health(work);
         let job = if ask.by_itself { context.start_by_itself(work) } else { context.start(work) };
         let since = context.time.instant;
-        self.health.judging = Some(Judging { job, of, ask, since });
+        let then = Then { eyes_on_min: self.eyes_on_min(around, since), drifted: around.drifted.clone() };
+        self.health.judging = Some(Judging { job, of, ask, since, then });
     }
 
-    /// The calibration in use and the one proposed; `None`: none is in use.
-    pub(super) fn to_be_judged(&self) -> Option<Of> {
+    /// The calibration in use and the one proposed, by what is before the eyes; `None`: none is in use.
+    pub(super) fn to_be_judged(&self, around: &EyesAround) -> Option<Of> {
         let proposed = self.proposal.as_ref().map(|proposal| proposal.calibration.clone());
         let in_use = self.in_use()?.clone();
-        Some(Of { proposed: proposed.filter(|proposed| !Arc::ptr_eq(proposed, &in_use)), in_use })
+        let proposed = proposed.filter(|proposed| !Arc::ptr_eq(proposed, &in_use));
+        Some(Of { proposed, in_use, source: around.source.spec.clone() })
     }
 
     fn stop_judging(&mut self, context: &mut Context<'_>) {
@@ -263,18 +204,14 @@ impl EyesWorkflow {
         context: &mut Context<'_>,
     ) {
         let HealthEnded { state, busy } = ended;
-        let Some(Judging { of, ask, .. }) = self.health.judging.take_if(|judging| judging.job == id) else {
+        let Some(Judging { of, ask, then, .. }) = self.health.judging.take_if(|judging| judging.job == id)
+        else {
             return;
         };
         self.rest(busy, context.time.instant);
         if let HealthState::Judged(health) = &state {
-            self.health.judged = Some(Judged {
-                of: of.clone(),
-                health: health.clone(),
-                at: context.time.day,
-                eyes_on_min: self.eyes_on_min(around, context.time.instant),
-                drifted: around.drifted.clone(),
-            });
+            let at = context.time.day;
+            self.health.judged = Some(Judged { of: of.clone(), health: health.clone(), at, then });
             let is_told = self.tell_of_health((&of, health), ask, around, context);
             // What cold eyes see says nothing of a calibration that was made warm.
             let says_something =
@@ -294,9 +231,9 @@ impl EyesWorkflow {
         self.health.told.clone()
     }
 
-    /// Whether these were judged.
-    pub(super) fn has_judged(&self, of: &Of) -> bool {
-        self.health.judged.as_ref().is_some_and(|judged| judged.of.is(of))
+    /// What was judged of these.
+    pub(super) fn judged_of(&self, of: &Of) -> Option<&Judged> {
+        self.health.judged.as_ref().filter(|judged| judged.of.is(of))
     }
 
     pub(super) fn has_ended(&self, of: &Of) -> bool {

@@ -4,10 +4,12 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use jiff::Timestamp;
 use plumbline_model::{StereoCalibration, StereoFrame};
 
 use super::clock::is_live;
-use super::health::{Ask, Of, goes_on};
+use super::health::goes_on;
+use super::health_judged::{Ask, Of};
 use super::view::EyesHealth;
 use super::work::{Context, at_most_busy};
 use super::workflow::{EyesAround, EyesWorkflow};
@@ -33,8 +35,8 @@ pub(super) struct ByItself {
     due: Option<Instant>,
     /// It could not look: it tries again from then on.
     put_off: Option<Instant>,
-    /// The proposal that was looked at.
-    looked_at: Option<Of>,
+    /// The proposal that was looked at, and when it had been judged before, if it had.
+    looked_at: Option<(Of, Option<Timestamp>)>,
     /// Which calibration looked bad, and how often in a row.
     bad: Option<(Arc<StereoCalibration>, u32)>,
     /// Which one was said to be bad.
@@ -42,14 +44,18 @@ pub(super) struct ByItself {
 }
 
 impl EyesWorkflow {
-    /// Whether it may be time to look, without being asked.
+    /// Whether it may be time to look, without being asked: whoever has a proposal may wait for it.
     pub fn may_look(&self, now: Instant) -> bool {
         let health = &self.health;
         self.in_use().is_some()
             && health.gathering.is_none()
             && health.judging.is_none()
             && health.by_itself.put_off.is_none_or(|until| now >= until)
-            && health.by_itself.due.is_none_or(|due| now >= due || self.has_unseen_proposal())
+            && (self.is_due(now) || self.proposal.is_some())
+    }
+
+    fn is_due(&self, now: Instant) -> bool {
+        self.health.by_itself.due.is_none_or(|due| now >= due)
     }
 
     /// A pair has come, and nothing is being judged.
@@ -68,9 +74,12 @@ impl EyesWorkflow {
         if !self.may_look(now) {
             return;
         }
-        let Some(of) = self.to_be_judged() else { return };
+        let Some(of) = self.to_be_judged(around) else { return };
+        let is_proposed = self.is_unseen(&of, around, context.time.day);
+        if !is_proposed && !self.is_due(now) {
+            return;
+        }
         let sees_now = is_live(&around.source) && goes_on(&around.source);
-        let is_proposed = self.has_unseen_proposal();
         // Watching drift says itself when the eyes turn, with the same share; and what a law of time takes off, the
         // calibration alone does not know.
         // Cold eyes do not see as they did when they were calibrated warm, and will again.
@@ -79,15 +88,20 @@ impl EyesWorkflow {
         if !sees_now || around.arm_moves || !is_needed {
             return self.put_off(now);
         }
-        self.health.by_itself.looked_at = of.proposed.is_some().then_some(of);
+        let judged_at = self.judged_of(&of).map(|judged| judged.at);
+        self.health.by_itself.looked_at = of.proposed.is_some().then_some((of, judged_at));
         self.gather_by_itself(frame, around, now);
     }
 
-    /// Whether a proposal waits that nobody has looked at beside the calibration in use.
-    fn has_unseen_proposal(&self) -> bool {
-        let Some(of) = self.proposal.as_ref().and_then(|_| self.to_be_judged()) else { return false };
-        let is_seen = self.health.by_itself.looked_at.as_ref().is_some_and(|seen| seen.is(&of));
-        of.proposed.is_some() && !is_seen && !self.has_judged(&of)
+    /// Whether a proposal waits that nobody has looked at beside the calibration in use, or not since what was judged of
+    /// it does not stand any more.
+    fn is_unseen(&self, of: &Of, around: &EyesAround, day: Timestamp) -> bool {
+        let judged = self.judged_of(of);
+        let stands = judged.is_some_and(|judged| !judged.when(around).is_outdated(day));
+        let looked_at = self.health.by_itself.looked_at.as_ref();
+        let is_seen =
+            looked_at.is_some_and(|(seen, before)| seen.is(of) && *before == judged.map(|judged| judged.at));
+        of.proposed.is_some() && !stands && !is_seen
     }
 
     /// It cannot look now; what was gathered is let go.
@@ -123,6 +137,10 @@ impl EyesWorkflow {
         around: &EyesAround,
         context: &mut Context<'_>,
     ) -> bool {
+        // What a recording shows is told where it was asked for: it is not how these eyes are now.
+        if !is_live(&around.source) {
+            return false;
+        }
         let is_cold = self.to_be_warm_min(around, context.time.instant).is_some();
         let by_itself = &mut self.health.by_itself;
         let is_told = by_itself.told.as_ref().is_some_and(|told| Arc::ptr_eq(told, &of.in_use));

@@ -2,8 +2,11 @@
 
 use std::time::Instant;
 
+use jiff::Timestamp;
+
 use super::clock::is_live;
-use super::health::{Ask, Of, PAIRS};
+use super::health::PAIRS;
+use super::health_judged::{Ask, Of};
 use super::view::{HealthState, HealthView, ProposalHealth};
 use super::workflow::{EyesAround, EyesWorkflow};
 use crate::ground::warming::Warmth;
@@ -11,7 +14,7 @@ use crate::ground::warming::Warmth;
 impl EyesWorkflow {
     /// What the window shows of it: of the calibration in use and of the proposal as they are now, and of nothing else.
     pub(super) fn shown_health(&self, around: &EyesAround, instant: Instant) -> HealthView {
-        let now = self.to_be_judged();
+        let now = self.to_be_judged(around);
         let is_of_now = |of: &Of| now.as_ref().is_some_and(|now| of.is(now));
         // Looking again by itself leaves what stands there.
         let has_ended = now.as_ref().is_some_and(|now| self.has_ended(now));
@@ -20,7 +23,7 @@ impl EyesWorkflow {
         let gathered = gathering.map(|gathering| gathering.pairs.len());
         let judging = self.health.judging.as_ref().filter(|judging| is_shown(&judging.ask));
         let ended = self.health.ended.as_ref().filter(|(of, _)| is_of_now(of));
-        let judged = self.health.judged.as_ref().filter(|judged| is_of_now(&judged.of));
+        let judged = now.as_ref().and_then(|now| self.judged_of(now));
         let state = match (gathered, judging) {
             (Some(pairs), _) => HealthState::Gathering { pairs, of: PAIRS },
             (None, Some(_)) => HealthState::Judging,
@@ -47,11 +50,16 @@ impl EyesWorkflow {
     }
 
     /// Why the proposal is not offered; `None`: it is, or nobody has judged it.
-    pub(super) fn not_offered(&self) -> Option<&'static str> {
-        let of = self.to_be_judged()?;
-        let judged = self.health.judged.as_ref().filter(|judged| judged.of.is(&of))?;
-        match judged.health.proposed?.1 {
+    pub(super) fn not_offered(&self, around: &EyesAround, now: Timestamp) -> Option<&'static str> {
+        let judged = self.judged_of(&self.to_be_judged(around)?)?;
+        let verdict = judged.health.proposed?.1;
+        let is_outdated = judged.when(around).is_outdated(now);
+        match verdict {
             ProposalHealth::Better | ProposalHealth::Untold | ProposalHealth::KnowsWhen => None,
+            _ if is_outdated => Some(
+                "When the proposed calibration was judged it was not better than the one in use, but that does not \
+                 stand any more: judge it again, then accept or discard it.",
+            ),
             ProposalHealth::Worse => Some(
                 "The proposed calibration fits what the eyes see worse than the one in use: it is not put in use. \
                  Discard it.",

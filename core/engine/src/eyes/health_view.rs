@@ -1,12 +1,17 @@
 //! What ordinary pairs say of the calibrations, for the window.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use jiff::Timestamp;
 use plumbline_effects::RobotModel;
 use plumbline_vision::health::BEARABLE_M;
 
 use crate::ground::warming::is_cold;
+
+/// What was judged longer ago says nothing of now. Looks that are taken by themselves come sooner, also where they are
+/// spaced so that they take little of a processor.
+const OLD: Duration = Duration::from_secs(1800);
 
 /// Whether the calibration in use still holds, and whether the proposed one is better, by ordinary pairs.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -23,7 +28,7 @@ pub struct HealthView {
 }
 
 impl HealthView {
-    /// Whether the proposal was judged and is not better: then it is not offered.
+    /// Whether the proposal was judged and was not better: then it is not offered, as long as that stands.
     pub fn is_against_proposal(&self) -> bool {
         let proposed = self.judged.as_ref().and_then(|health| health.proposed);
         matches!(proposed, Some((_, ProposalHealth::Worse | ProposalHealth::Undecided)))
@@ -53,6 +58,16 @@ impl JudgedWhen {
         let worst_m = self.moved_m?.into_iter().fold(0.0, f64::max);
         (worst_m > BEARABLE_M).then_some(worst_m)
     }
+
+    /// How long ago it was. A clock that was set back makes nothing younger than new.
+    pub fn age(&self, now: Timestamp) -> Duration {
+        Duration::try_from(now.duration_since(self.at)).unwrap_or_default()
+    }
+
+    /// Whether nothing that was judged stands any more, neither of the calibration in use nor of a proposal.
+    pub fn is_outdated(&self, now: Timestamp) -> bool {
+        self.moved_too_far_m().is_some() || self.age(now) > OLD
+    }
 }
 
 /// How far places come out from where they came out first, as far as watching drift can tell.
@@ -60,24 +75,44 @@ impl JudgedWhen {
 pub struct Drifted {
     /// Counts watches: each begins with nothing moved.
     pub watch: u64,
-    /// With which model it is told.
-    pub model: Arc<RobotModel>,
-    /// Along and across the line of sight near, in the middle and far, m.
-    pub off_m: [[f64; 2]; 3],
+    /// What it tells.
+    pub told: DriftTold,
+}
+
+/// What watching drift tells of how far places have moved.
+#[derive(Clone, Debug)]
+pub enum DriftTold {
+    /// Nothing was seen yet: nothing has moved.
+    Nothing,
+    /// What was seen is being told with another model: until that has ended nobody knows.
+    Anew,
+    /// This far.
+    Off {
+        /// With which model it is told.
+        model: Arc<RobotModel>,
+        /// Along and across the line of sight near, in the middle and far, m.
+        off_m: [[f64; 2]; 3],
+    },
 }
 
 impl Drifted {
-    /// How far places have moved since then (near, in the middle, far), m; where nothing was known then, since watching
-    /// began. `None`: it was told with another model.
+    /// How far places have moved since then (near, in the middle, far), m; where it was not watched then, since watching
+    /// began. `None`: nothing was seen since, or nobody knows how far they had moved by then: it was being told anew, or
+    /// told with another model.
     pub(super) fn since(&self, then: Option<&Self>) -> Option<[f64; 3]> {
-        let Some(then) = then.filter(|then| then.watch == self.watch) else {
-            return Some(self.off_m.map(|[along_m, across_m]| along_m.hypot(across_m)));
-        };
-        let moved_m = |row: usize| {
-            let [along_m, across_m] = [0, 1].map(|axis| self.off_m[row][axis] - then.off_m[row][axis]);
-            along_m.hypot(across_m)
-        };
-        Arc::ptr_eq(&self.model, &then.model).then(|| [0, 1, 2].map(moved_m))
+        let DriftTold::Off { model, off_m } = &self.told else { return None };
+        let all_m = || Some(off_m.map(|[along_m, across_m]| along_m.hypot(across_m)));
+        let Some(then) = then.filter(|then| then.watch == self.watch) else { return all_m() };
+        match &then.told {
+            DriftTold::Nothing => all_m(),
+            DriftTold::Anew => None,
+            DriftTold::Off { model: before, off_m: then_m } => Arc::ptr_eq(model, before).then(|| {
+                [0, 1, 2].map(|row| {
+                    let [along_m, across_m] = [0, 1].map(|axis| off_m[row][axis] - then_m[row][axis]);
+                    along_m.hypot(across_m)
+                })
+            }),
+        }
     }
 }
 

@@ -18,6 +18,7 @@ pub mod geometry;
 pub mod ghost;
 mod health;
 mod health_by_itself;
+mod health_judged;
 mod health_shown;
 #[cfg(test)]
 mod health_tests;

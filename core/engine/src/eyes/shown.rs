@@ -30,7 +30,7 @@ impl EyesWorkflow {
             board_seen: self.board_seen.clone(),
             auto_capture: self.auto_capture,
             capture_ended: self.capture_ended,
-            hint: self.hint.clone(),
+            hint: self.shown_hint(around, now),
             collected: self.derived.collected.clone(),
             minutes_on: self.minutes_of_each(),
             dropped: Arc::new(self.collection.dropped().clone()),

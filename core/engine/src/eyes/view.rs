@@ -11,7 +11,7 @@ use plumbline_model::{
 };
 
 pub use super::health_view::{
-    Drifted, EyesHealth, HealthFigures, HealthState, HealthView, JudgedWhen, ProposalHealth,
+    DriftTold, Drifted, EyesHealth, HealthFigures, HealthState, HealthView, JudgedWhen, ProposalHealth,
 };
 use super::map::TableMap;
 use crate::ground::jobs::JobId;

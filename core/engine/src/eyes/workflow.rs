@@ -76,6 +76,9 @@ pub struct EyesWorkflow {
     /// The newest look, for when capturing is switched on.
     pub(super) last_look: Option<Look>,
     pub(super) hint: Option<CaptureHint>,
+    /// Of which source, counted.
+    pub(super) hint_of: u64,
+    pub(super) is_done_with_board: bool,
     pub(super) captured_at: Option<Instant>,
     pub(super) board_seen: Option<BoardSeen>,
     pub(super) not_collected: Arc<[(String, String)]>,
@@ -296,6 +299,8 @@ impl Workflow for EyesWorkflow {
             auto: AutoCapture::default(),
             last_look: None,
             hint: None,
+            hint_of: 0,
+            is_done_with_board: false,
             captured_at: None,
             board_seen: None,
             not_collected: Arc::from([]),
@@ -344,7 +349,7 @@ impl Workflow for EyesWorkflow {
             EyesCommand::RestorePair { pair } => self.edit(context, |pairs| pairs.restore_pair(&pair)),
             EyesCommand::Solve => self.solve(around, context),
             EyesCommand::JudgeHealth => self.judge_health(around, context),
-            EyesCommand::Accept => match self.not_offered() {
+            EyesCommand::Accept => match self.not_offered(around, context.time.day) {
                 Some(why) => context.refuse(why),
                 None => self.accept(context),
             },

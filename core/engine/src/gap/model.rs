@@ -86,7 +86,7 @@ fn plain(name: &str) -> String {
     let words = |id: &str| id.replace('-', " ");
     match name.split_once('@') {
         Some((id, site)) if !site.is_empty() => {
-            format!("{} of the {}", words(id), parameter_words::place(site))
+            format!("{} of {}", words(id), parameter_words::the(&parameter_words::place(site)))
         }
         _ => words(name.trim_end_matches('@')),
     }

@@ -1,5 +1,7 @@
 //! Sessions that can be compared with the model, and whether they changed.
 
+use std::fs::File;
+use std::io::{BufRead as _, BufReader};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
@@ -44,7 +46,7 @@ pub fn listed(folder: PathBuf) -> GapSession {
     }
 }
 
-/// What tells whether a session's tables changed: length and time of each.
+/// What tells whether a session's tables changed: length, time and contents of each.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TableStamp {
@@ -54,34 +56,87 @@ pub struct TableStamp {
     length: u64,
     /// Seconds since 1970 of its last change.
     changed: u64,
+    /// A sum over its bytes; `None`: noted by a program that took none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    sum: Option<u64>,
 }
 
 impl TableStamp {
-    /// Whether it is the same table, as far as a copy of it can tell: copies are as long, but written later.
-    fn may_be_copy_of(&self, other: &Self) -> bool {
-        self.table == other.table && self.length == other.length
+    /// Whether the table holds what it held. Where its contents were not noted, it must not have been written since either.
+    fn is_as(&self, then: &Self) -> bool {
+        self.holds(then).unwrap_or(self.changed == then.changed && self.length == then.length)
+    }
+
+    /// The same, as far as a copy of it can tell: copies are written later.
+    fn may_be_copy_of(&self, then: &Self) -> bool {
+        self.holds(then).unwrap_or(self.length == then.length)
+    }
+
+    /// Whether it holds what the other one does; `None`: of one of them that was not noted.
+    fn holds(&self, other: &Self) -> Option<bool> {
+        let sums = self.sum.zip(other.sum);
+        sums.map(|(own, others)| own == others && self.length == other.length)
     }
 }
 
-/// The session where it is now: a lab that was moved or copied brings its sessions along, and those in its own
-/// folder `sessions` are what is meant, whatever path was noted.
+/// Whether all tables are as they were.
+pub fn are_as(now: &[TableStamp], then: &[TableStamp]) -> bool {
+    are_all(now, then, TableStamp::is_as)
+}
+
+fn are_all(now: &[TableStamp], then: &[TableStamp], is: fn(&TableStamp, &TableStamp) -> bool) -> bool {
+    now.len() == then.len()
+        && now.iter().zip(then).all(|(now, then)| now.table == then.table && is(now, then))
+}
+
+/// The session where it is now: a lab that was moved or copied brings its sessions along. Those in its own folder
+/// `sessions` are meant where the noted folder is gone, or holds the very same; one of the same name in another lab
+/// is another session.
 pub fn at_home(session: KeptSession, sessions: &Path) -> KeptSession {
     let Some(home) = session.folder.file_name().map(|name| sessions.join(name)) else { return session };
     if home == session.folder || !home.is_dir() {
         return session;
     }
     let now = stamps(&home);
-    let is_copy = now.len() == session.tables.len()
-        && now.iter().zip(&session.tables).all(|(now, then)| now.may_be_copy_of(then));
+    if session.folder.is_dir() {
+        let is_the_same = is_same_folder(&home, &session.folder)
+            || are_all(&now, &stamps(&session.folder), |own, others| own.holds(others) == Some(true));
+        if !is_the_same {
+            return session;
+        }
+    }
+    let is_copy = are_all(&now, &session.tables, TableStamp::may_be_copy_of);
     KeptSession { folder: home, tables: if is_copy { now } else { session.tables } }
+}
+
+fn is_same_folder(a: &Path, b: &Path) -> bool {
+    a.canonicalize().ok().zip(b.canonicalize().ok()).is_some_and(|(a, b)| a == b)
 }
 
 /// The tables of a session as they are now.
 pub fn stamps(folder: &Path) -> Vec<TableStamp> {
     let of = |table: &&str| {
-        let about = std::fs::metadata(folder.join(table)).ok()?;
-        let changed = about.modified().ok()?.duration_since(SystemTime::UNIX_EPOCH).ok()?;
-        Some(TableStamp { table: (*table).to_owned(), length: about.len(), changed: changed.as_secs() })
+        let file = folder.join(table);
+        let about = std::fs::metadata(&file).ok()?;
+        let changed = about.modified().ok()?.duration_since(SystemTime::UNIX_EPOCH).ok()?.as_secs();
+        Some(TableStamp { table: (*table).to_owned(), length: about.len(), changed, sum: sum(&file) })
     };
     TABLES.iter().filter_map(of).collect()
+}
+
+/// A sum over the bytes of a file by which two of them are told apart; `None`: it cannot be read. FNV-1a with 64 bits:
+/// Fowler, Noll, Vo and Eastlake, "The FNV Non-Cryptographic Hash Algorithm". Nobody is to be kept from forging it.
+fn sum(file: &Path) -> Option<u64> {
+    let mut reader = BufReader::new(File::open(file).ok()?);
+    let mut sum = 0xcbf2_9ce4_8422_2325_u64;
+    loop {
+        let bytes = reader.fill_buf().ok()?;
+        if bytes.is_empty() {
+            return Some(sum);
+        }
+        sum =
+            bytes.iter().fold(sum, |sum, byte| (sum ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3));
+        let read = bytes.len();
+        reader.consume(read);
+    }
 }

@@ -121,13 +121,10 @@ fn what_was_found_is_there_after_a_restart_and_is_added_and_taken_back() {
     assert!(!view.model.history.is_empty(), "that it was there is not forgotten");
 }
 
-#[test]
-fn a_lab_that_was_moved_or_copied_finds_its_own_sessions() {
-    let lab = Lab::new().with_finding();
+/// A folder with what a lab keeps of one finding.
+fn copy_of(lab: &Lab) -> tempfile::TempDir {
     let copied = tempfile::tempdir().expect("temporary folder");
     let name = Lab::session_in(std::path::Path::new("")).file_name().expect("a name").to_owned();
-    let finding = std::fs::read_dir(lab.folder.path().join("gap")).expect("read").next().expect("one");
-    let finding = finding.expect("read").path();
     for (from, to) in [
         (lab.folder.path().join("sessions").join(&name), copied.path().join("sessions").join(&name)),
         (lab.folder.path().join("gap"), copied.path().join("gap")),
@@ -137,7 +134,13 @@ fn a_lab_that_was_moved_or_copied_finds_its_own_sessions() {
             std::fs::copy(file.path(), to.join(file.file_name())).expect("copied");
         }
     }
-    assert!(copied.path().join("gap").join(finding.file_name().expect("a name")).is_file());
+    copied
+}
+
+#[test]
+fn a_lab_that_was_moved_or_copied_finds_its_own_sessions() {
+    let lab = Lab::new().with_finding();
+    let copied = copy_of(&lab);
     let session = Lab::session_in(copied.path());
     let mut there = Lab::on(copied);
     let shown = there.view().shown.clone().expect("it was found");
@@ -146,6 +149,49 @@ fn a_lab_that_was_moved_or_copied_finds_its_own_sessions() {
     drop(lab);
     let copied = there.folder;
     assert_eq!(Lab::on(copied).view().shown.clone().expect("found").folders, [session]);
+}
+
+/// One digit of a table is another one: it is as long as it was.
+fn change_a_digit(session: &std::path::Path) {
+    let file = session.join("touches.csv");
+    let text = std::fs::read_to_string(&file).expect("read");
+    let at = text.rfind(|digit: char| digit.is_ascii_digit()).expect("numbers");
+    let other = if &text[at..=at] == "7" { "3" } else { "7" };
+    std::fs::write(&file, format!("{}{other}{}", &text[..at], &text[at + 1..])).expect("written");
+}
+
+#[test]
+fn a_session_of_the_same_name_and_length_in_another_lab_is_another_one() {
+    let lab = Lab::new().with_finding();
+    let noted = Lab::session_in(lab.folder.path());
+    let copied = copy_of(&lab);
+    change_a_digit(&Lab::session_in(copied.path()));
+    let mut there = Lab::on(copied);
+    let shown = there.view().shown.clone().expect("it was found");
+    assert_eq!(shown.folders, [noted], "what was compared is there still");
+    // Once it is gone, the one that is here is not what was compared.
+    drop(lab);
+    let mut there = Lab::on(there.folder);
+    let view = there.view();
+    assert_eq!(view.shown.clone().expect("found").folders, [Lab::session_in(there.folder.path())]);
+    assert!(matches!(view.step, StepState::Stale { .. }), "{:?}", view.step);
+}
+
+#[test]
+fn a_table_that_was_written_again_and_holds_the_same_has_not_changed() {
+    let lab = Lab::new().with_finding();
+    let session = Lab::session_in(lab.folder.path());
+    let then = super::sessions::stamps(&session);
+    let table = session.join("touches.csv");
+    let later = std::time::SystemTime::now() + std::time::Duration::from_secs(90);
+    std::fs::File::options()
+        .append(true)
+        .open(&table)
+        .and_then(|file| file.set_modified(later))
+        .expect("set");
+    assert!(super::sessions::are_as(&super::sessions::stamps(&session), &then));
+    change_a_digit(&session);
+    assert!(!super::sessions::are_as(&super::sessions::stamps(&session), &then));
 }
 
 #[test]

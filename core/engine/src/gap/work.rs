@@ -10,7 +10,7 @@ use plumbline_model::{JobContext, Session, counted, files};
 use plumbline_report::ReportContext;
 
 use super::search::{SearchError, measured, search};
-use super::sessions::{self, at_home, stamps};
+use super::sessions::{self, are_as, at_home, stamps};
 use super::store::{KeptFinding, KeptSession, Named, Store};
 use super::view::GapSession;
 use super::{at_tip, model};
@@ -326,7 +326,7 @@ fn restore(folder: &std::path::Path, rig: &Arc<Rig>) -> Restored {
 fn changed(watched: &[KeptSession]) -> Vec<PathBuf> {
     watched
         .iter()
-        .filter(|session| stamps(&session.folder) != session.tables)
+        .filter(|session| !are_as(&stamps(&session.folder), &session.tables))
         .map(|session| session.folder.clone())
         .collect()
 }

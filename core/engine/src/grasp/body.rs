@@ -28,8 +28,10 @@ const LONGEST: Duration = Duration::from_secs(60);
 const PAIR_WITHIN: Duration = Duration::from_secs(20);
 /// The angles of a moment have been read after this long.
 const READ_WITHIN: Duration = Duration::from_secs(1);
-/// Joints that this computer was too busy to hear in time are waited for so long.
-const HEARD_WITHIN: Duration = Duration::from_secs(10);
+/// Joints that this computer was too busy to hear in time are waited for so long, as on a way …
+const HEARD_WITHIN: Duration = Duration::from_secs(20);
+/// … and those that do not answer at all no longer than this: they may only seem so for a moment.
+const SILENT_FOR: Duration = Duration::from_secs(1);
 /// After this long it is looked again whether joints have been read anew: a fraction of a cycle of the bus.
 const READ_AGAIN: Duration = Duration::from_millis(5);
 /// Fingers around a thing may come so much nearer to what it stands on than their shapes say, m: they
@@ -146,12 +148,18 @@ impl<'a> LedBody<'a> {
     }
 
     /// The same once all joints are heard: those that this computer is too busy to hear in time are waited for, and
-    /// nothing is moved meanwhile. Those that do not answer at all are not.
+    /// nothing is moved meanwhile. Those that do not answer at all are waited for but a moment.
     fn state_heard(&mut self) -> Result<Arc<JointState>, Halt> {
         let began = Instant::now();
+        let mut silent_since = None;
         loop {
             let state = self.state()?;
-            if !are_merely_late(&state) || began.elapsed() > HEARD_WITHIN {
+            if state.unknown.is_empty() || began.elapsed() > HEARD_WITHIN {
+                return Ok(state);
+            }
+            if are_merely_late(&state) {
+                silent_since = None;
+            } else if silent_since.get_or_insert_with(Instant::now).elapsed() >= SILENT_FOR {
                 return Ok(state);
             }
             if state.stopped {

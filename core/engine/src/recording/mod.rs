@@ -1,6 +1,7 @@
 //! Recording what works live into `log.mcap` of a session.
 
 pub mod command;
+mod export;
 mod recorder;
 #[cfg(test)]
 mod tests;

@@ -206,6 +206,54 @@ fn what_joints_are_told_is_in_it_beside_where_they_are_and_limp_ones_are_told_no
 }
 
 #[test]
+fn a_recording_is_written_as_a_data_set_and_what_came_of_it_is_said() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut desk = Desk::new(folder.path(), true);
+    let export = |session: &Path, to: &Path| RecordingCommand::ExportLerobot {
+        session: session.to_owned(),
+        folder: to.to_owned(),
+        task: "Grasp the tomato.".to_owned(),
+    };
+    desk.apply(RecordingCommand::Start);
+    let RecordingState::On { session, .. } = desk.view().state.clone() else { panic!("{:?}", desk.view()) };
+    let set = folder.path().join("set");
+    desk.apply(export(&session, &set));
+    assert!(desk.said().contains("still being written") && !set.exists(), "{}", desk.said());
+    desk.saw(&frame(1));
+    desk.apply(RecordingCommand::Stop);
+    // Nobody had read a joint: there is no frame.
+    desk.apply(export(&session, &set));
+    assert!(desk.said().contains("record with the robot connected"), "{}", desk.said());
+    assert!(!set.exists() && desk.view().exporting.is_none());
+    desk.apply(RecordingCommand::Start);
+    let RecordingState::On { session, .. } = desk.view().state.clone() else { panic!("{:?}", desk.view()) };
+    let rig = default_rig();
+    let servo = &rig.servos[0];
+    let joint = JointView {
+        angle_rad: Some(0.1),
+        goal_rad: Some(0.1),
+        ..JointView::unheard(servo, rig.limits(servo.joint))
+    };
+    desk.room.read(&RobotView { joints: Arc::from([joint]), ..RobotView::default() }, Time::now());
+    for number in 2..6 {
+        std::thread::sleep(Duration::from_millis(5));
+        desk.saw(&frame(number));
+    }
+    desk.apply(RecordingCommand::Stop);
+    desk.apply(export(&session, &set));
+    assert!(set.join("meta/info.json").is_file(), "{}", desk.said());
+    assert!(set.join("meta/cameras.json").is_file(), "the calibration lies beside the recording");
+    assert!(desk.view().exporting.is_none());
+    let work = RecordingWork::Export(super::export::ExportLerobot {
+        session,
+        folder: folder.path().join("another"),
+        task: "Grasp the tomato.".to_owned(),
+    });
+    let said = work.run(&Unattended).expect("written").summary();
+    assert!(said.contains("another: 4 frames at ") && said.contains("with 1 joint."), "{said}");
+}
+
+#[test]
 fn where_nothing_is_live_nothing_is_recorded() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut desk = Desk::new(folder.path(), false);

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
+use crate::ground::jobs::JobId;
+
 /// Recording.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecordingView {
@@ -11,6 +13,8 @@ pub struct RecordingView {
     pub state: RecordingState,
     /// The recording that was finished last, in this run of the program.
     pub last: Option<Arc<Recorded>>,
+    /// One is being written as a data set.
+    pub exporting: Option<JobId>,
 }
 
 impl RecordingView {

@@ -10,6 +10,7 @@ use plumbline_model::session::{Manifest, names};
 use plumbline_model::{JobContext, StereoCalibration, StereoCameras, counted};
 use plumbline_recording::{About, Attached, FILE, RecordingWriter};
 
+use super::export::ExportLerobot;
 use super::recorder::{Recorder, Written};
 use crate::ground::jobs::JobError;
 use crate::ground::sessions::free_folder;
@@ -33,6 +34,8 @@ pub enum RecordingWork {
     },
     /// Waits until everything is written.
     End(Recorder),
+    /// Writes a recording as a data set.
+    Export(ExportLerobot),
 }
 
 /// What came out.
@@ -42,6 +45,8 @@ pub enum RecordingResult {
     Begun(Recorder),
     /// It is on disk.
     Ended(Written),
+    /// It was written as a data set: what of it, and where, in sentences.
+    Exported(String),
 }
 
 /// What the handlers of this room may reach besides their own workflow.
@@ -54,6 +59,7 @@ impl LongWork for RecordingWork {
         match self {
             Self::Begin { .. } => "Begin a recording".to_owned(),
             Self::End(_) => "Finish the recording".to_owned(),
+            Self::Export(_) => "Export as LeRobot data set".to_owned(),
         }
     }
 
@@ -61,7 +67,7 @@ impl LongWork for RecordingWork {
         matches!(self, Self::Begin { .. })
     }
 
-    fn run(self, _: &dyn JobContext) -> Result<RecordingResult, JobError> {
+    fn run(self, context: &dyn JobContext) -> Result<RecordingResult, JobError> {
         match self {
             Self::Begin { sessions, started, rig, of_twin, cameras } => {
                 let name = format!("{}_recording", started.strftime("%Y-%m-%dT%H-%M-%S"));
@@ -79,6 +85,7 @@ impl LongWork for RecordingWork {
                 let writer = writer.map_err(JobError::failed)?;
                 Recorder::start(session, writer).map(RecordingResult::Begun).map_err(JobError::failed)
             }
+            Self::Export(export) => export.run(context).map(RecordingResult::Exported),
             Self::End(recorder) => recorder.finish().map(RecordingResult::Ended).map_err(JobError::failed),
         }
     }
@@ -121,6 +128,7 @@ impl RecordingResult {
                 counted(usize::try_from(counts.pairs).unwrap_or(usize::MAX), "pair"),
                 counts.bytes as f64 * 1e-6
             ),
+            Self::Exported(said) => said.clone(),
         }
     }
 }

@@ -11,6 +11,7 @@ use plumbline_recording::{EyePlaces, JointGoal, JointReading, Level, Note, Outli
 use serde_json::{Value, json};
 
 use super::command::RecordingCommand;
+use super::export::ExportLerobot;
 use super::recorder::{Item, Recorder, Written};
 use super::view::{Recorded, RecordedSoFar, RecordingState, RecordingView};
 use super::work::{Context, RecordingResult, RecordingWork};
@@ -61,6 +62,8 @@ pub struct RecordingWorkflow {
     /// Numbers of the newest pairs that are in it, and at which time each stands.
     times: VecDeque<(u64, Timestamp)>,
     last: Option<Arc<Recorded>>,
+    /// One is being written as a data set.
+    exporting: Option<JobId>,
 }
 
 /// A source as it was seen last.
@@ -238,6 +241,21 @@ impl RecordingWorkflow {
         self.phase = Phase::Begins(context.start(work));
     }
 
+    fn export(&mut self, export: ExportLerobot, context: &mut Context<'_>) {
+        if self.exporting.is_some() {
+            return context.refuse("A recording is being exported: wait until that has ended, or cancel it.");
+        }
+        let of_now = match &self.phase {
+            Phase::On(recorder) => Some(recorder.session()),
+            Phase::Ends(_, recorded) => Some(recorded.session.as_path()),
+            Phase::Off | Phase::Begins(_) => None,
+        };
+        if of_now == Some(&export.session) {
+            return context.refuse("This recording is still being written: stop it first, then export it.");
+        }
+        self.exporting = Some(context.start(RecordingWork::Export(export)));
+    }
+
     fn stop(&mut self, context: &mut Context<'_>) {
         let Phase::On(mut recorder) = std::mem::take(&mut self.phase) else {
             return context.refuse("Nothing is being recorded.");
@@ -311,13 +329,16 @@ impl Workflow for RecordingWorkflow {
             },
             Phase::Ends(..) => RecordingState::Ends,
         };
-        Arc::new(RecordingView { state, last: self.last.clone() })
+        Arc::new(RecordingView { state, last: self.last.clone(), exporting: self.exporting })
     }
 
     fn apply(&mut self, command: RecordingCommand, around: &RecordingAround, context: &mut Context<'_>) {
         match command {
             RecordingCommand::Start => self.start(around, context),
             RecordingCommand::Stop => self.stop(context),
+            RecordingCommand::ExportLerobot { session, folder, task } => {
+                self.export(ExportLerobot { session, folder, task }, context);
+            }
         }
     }
 
@@ -328,6 +349,7 @@ impl Workflow for RecordingWorkflow {
         around: &RecordingAround,
         context: &mut Context<'_>,
     ) {
+        self.exporting.take_if(|exporting| *exporting == id);
         match (result, std::mem::take(&mut self.phase)) {
             (RecordingResult::Begun(recorder), Phase::Begins(begun)) if begun == id => {
                 self.since = Some(context.time);
@@ -345,6 +367,7 @@ impl Workflow for RecordingWorkflow {
     }
 
     fn work_ended(&mut self, id: JobId, _: Option<&str>, _: &RecordingAround, _: &mut Context<'_>) {
+        self.exporting.take_if(|exporting| *exporting == id);
         if let Phase::Begins(own) | Phase::Ends(own, _) = self.phase
             && own == id
         {

@@ -12,16 +12,16 @@ use crate::handeye::{HandEyeAround, HandEyeWorkflow};
 impl Neighbors<HandEyeWorkflow> for State {
     fn around(&self, world: World) -> HandEyeAround {
         let (gap, touch) = (self.rooms.gap.of(world), self.rooms.touch.of(world));
-        // Those that the model was learned from, else those that were made to learn from, on whatever day.
+        // Those that the model was learned from, else those that were made to learn from, on whatever day. What was
+        // touched to check a model was sent elsewhere on purpose.
         let searched = gap.found().map(|(shown, _)| shown.folders.clone());
         let one = searched.and_then(|folders| <[_; 1]>::try_from(folders).ok()).map(|[folder]| folder);
-        let newest = || touch.trained_session().or(touch.finished_session().map(|(session, _)| session));
         let is_twin = world == World::Twin && self.twin.running;
         HandEyeAround {
             grasp: <Self as Neighbors<GraspWorkflow>>::around(self, world),
             added: gap.model().cloned(),
             is_changing: gap.is_changing(),
-            touches: one.or_else(|| newest().map(Path::to_owned)),
+            touches: one.or_else(|| touch.trained_session().map(Path::to_owned)),
             sessions: touch.sessions(),
             twin: is_twin.then(|| self.twin.clone()),
         }
@@ -41,8 +41,8 @@ mod tests {
 
     use jiff::Timestamp;
     use plumbline_model::robot::default_rig;
-    use plumbline_model::session::{Manifest, names};
-    use plumbline_model::touch_plan::Purpose;
+    use plumbline_model::session::{Chain, Manifest, names};
+    use plumbline_model::touch_plan::{Finger, Purpose};
     use plumbline_model::{Pixel, Unattended};
 
     use super::*;
@@ -53,12 +53,15 @@ mod tests {
     use crate::touch::testing::record;
 
     /// A finished run of one touch, as a lab keeps it.
-    fn run(lab: &Path, name: &str, (purpose, started): (Purpose, Timestamp)) -> PathBuf {
+    fn run(lab: &Path, name: &str, (purpose, finger, started): (Purpose, Finger, Timestamp)) -> PathBuf {
         let session = lab.join("sessions").join(name);
         std::fs::create_dir_all(&session).expect("made");
         let rig = default_rig();
-        let manifest =
-            Manifest { touchscreen: Some(rig.touchscreen.clone()), ..Manifest::of_rig(&rig.name, started) };
+        let manifest = Manifest {
+            touchscreen: Some(rig.touchscreen.clone()),
+            chain: Some(Chain { tip: finger.tip().to_owned(), joints: vec![] }),
+            ..Manifest::of_rig(&rig.name, started)
+        };
         manifest.write(&session.join(names::MANIFEST)).expect("written");
         let mut progress = Progress::new(purpose, started, 1);
         progress.records = vec![record(1, "g", Pixel::new(100.0, 200.0), Pixel::new(101.0, 201.0))];
@@ -98,10 +101,20 @@ mod tests {
         let none = around(&opened(lab));
         assert_eq!((none.touches, none.sessions), (None, lab.join("sessions")));
         let at = |second| Timestamp::from_second(second).expect("a time");
-        let learned = run(lab, "learned", (Purpose::Train, at(1_000)));
-        run(lab, "checked", (Purpose::Check, at(2_000)));
-        assert_eq!(around(&opened(lab)).touches, Some(learned), "a check is not what is learned from");
-        let newer = run(lab, "newer", (Purpose::Train, at(3_000)));
+        let learned = run(lab, "learned", (Purpose::Train, Finger::Right, at(1_000)));
+        run(lab, "checked", (Purpose::Check, Finger::Right, at(2_000)));
+        assert_eq!(
+            around(&opened(lab)).touches.as_ref(),
+            Some(&learned),
+            "a check is not what is learned from"
+        );
+        run(lab, "left", (Purpose::Train, Finger::Left, at(2_500)));
+        assert_eq!(
+            around(&opened(lab)).touches,
+            Some(learned),
+            "the other arm is not the one that was learned"
+        );
+        let newer = run(lab, "newer", (Purpose::Train, Finger::Right, at(3_000)));
         assert_eq!(around(&opened(lab)).touches, Some(newer));
     }
 }

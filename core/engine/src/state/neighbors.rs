@@ -12,8 +12,8 @@ use super::State;
 use super::rooms::{Neighbors, Rooms};
 use crate::commission::CommissionWorkflow;
 use crate::detect::{DetectAround, DetectWorkflow};
-use crate::drift::{BoardAt, DriftAround, DriftWorkflow};
-use crate::eyes::view::{CaptureEnded, Drifted};
+use crate::drift::{BoardAt, DriftAround, DriftWorkflow, Told};
+use crate::eyes::view::{CaptureEnded, DriftTold, Drifted};
 use crate::eyes::{EyesAround, EyesWorkflow};
 use crate::gap::{GapAround, GapWorkflow};
 use crate::grasp::{GraspAround, GraspWorkflow};
@@ -164,9 +164,16 @@ impl State {
 
     /// How far places have moved since drift is watched, for whoever judged the eyes.
     fn drifted(&self) -> Option<Drifted> {
-        let (watch, model, newest) = self.rooms.drift.newest(self.rooms.source.view().opened)?;
-        let off_m = [0, 1, 2].map(|row| [newest.along_m[row], newest.across_m[row]]);
-        Some(Drifted { watch, model: model.clone(), off_m })
+        let (watch, told) = self.rooms.drift.newest(self.rooms.source.view().opened)?;
+        let told = match told {
+            Told::Nothing => DriftTold::Nothing,
+            Told::Anew => DriftTold::Anew,
+            Told::Newest(model, newest) => {
+                let off_m = [0, 1, 2].map(|row| [newest.along_m[row], newest.across_m[row]]);
+                DriftTold::Off { model: model.clone(), off_m }
+            }
+        };
+        Some(Drifted { watch, told })
     }
 }
 

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use jiff::Timestamp;
 use plumbline_model::files::{self, Size};
 use plumbline_model::session::{Chain, ExtraColumn, Manifest, TouchTable, Touchscreen, names};
-use plumbline_model::touch_plan::Purpose;
+use plumbline_model::touch_plan::{Finger, Purpose};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -45,11 +45,11 @@ pub struct Stored {
 pub struct Runs {
     /// Not finished, newest first.
     pub unfinished: Vec<UnfinishedRun>,
-    /// The newest finished one that was made for training.
+    /// The newest finished one of the right finger that was made for training.
     pub trained: Option<TrainedRun>,
 }
 
-/// A finished run for training.
+/// A finished run of the right finger for training: M1 to M3 are learned with it, and its arm is tied to the eyes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrainedRun {
     /// Its folder.
@@ -208,7 +208,8 @@ pub fn unfinished(session: &Path, progress: &Progress) -> UnfinishedRun {
 
 fn trained(session: &Path, progress: &Progress) -> Option<TrainedRun> {
     let manifest = Manifest::read(&session.join(names::MANIFEST)).ok()?;
-    (progress.counted().count() > 0).then_some(TrainedRun {
+    let is_right = manifest.chain.as_ref().is_some_and(|chain| chain.tip == Finger::Right.tip());
+    (is_right && progress.counted().count() > 0).then_some(TrainedRun {
         session: session.to_owned(),
         screen: manifest.touchscreen?,
         gave_placement: progress.gave_placement,

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use plumbline_model::frame::{Board, Pose, Robot};
 
-use super::view::BoardTour;
+use super::view::{BoardTour, TourWaits};
 
 /// While the board is shown at all places it stays at each for this long, so that people see it there, too.
 const AT_EACH_PLACE: Duration = Duration::from_millis(1600);
@@ -17,6 +17,8 @@ const LOOKED_FOR_IN_VAIN: Duration = Duration::from_secs(5);
 pub(super) const NOBODY_LOOKS: Duration = Duration::from_secs(12);
 /// …and after this also when somebody does: the machine is too slow.
 const LONGEST_AT_A_PLACE: Duration = Duration::from_secs(60);
+/// Where it stays for longer than this, it is said what it waits for.
+const SAID_AFTER: Duration = Duration::from_secs(4);
 
 /// One search for the board has ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,14 +76,23 @@ impl BoardTours {
         }
     }
 
+    /// The operator waits for nothing more where it is.
+    pub fn skip(&mut self) {
+        if let Some(tour) = &mut self.under_way {
+            tour.is_skipped = tour.held.is_some();
+        }
+    }
+
     /// Goes on as time passes.
     pub fn step(&mut self, now: Instant) -> TourStep {
-        let Some(tour) = self.under_way.as_mut().filter(|tour| tour.goes_on(now)) else {
+        let Some(tour) = &mut self.under_way else { return TourStep::Stays };
+        if !tour.goes_on(now) {
+            tour.waits = tour.waits_for(now);
             return TourStep::Stays;
-        };
+        }
         match tour.places.get(tour.next).copied() {
             Some(robot_from_board) => {
-                (tour.next, tour.held, tour.looks, tour.is_done) = (tour.next + 1, Some(now), 0, false);
+                tour.comes_to_the_next(now);
                 TourStep::Holds(robot_from_board)
             }
             None => {
@@ -115,20 +126,29 @@ struct Tour {
     looks: u32,
     /// Whether nothing more is to be had of it there.
     is_done: bool,
+    /// Whether nobody waits for that.
+    is_skipped: bool,
+    /// What it waits for, where that takes long.
+    waits: Option<TourWaits>,
 }
 
 impl Tour {
     fn through(places: Vec<Pose<Robot, Board>>) -> Self {
-        Self { places, next: 0, held: None, looks: 0, is_done: false }
+        Self { places, next: 0, held: None, looks: 0, is_done: false, is_skipped: false, waits: None }
+    }
+
+    fn comes_to_the_next(&mut self, now: Instant) {
+        (self.next, self.held, self.looks) = (self.next + 1, Some(now), 0);
+        (self.is_done, self.is_skipped, self.waits) = (false, false, None);
     }
 
     /// As it goes on after it was broken off: the board is held once more where it was held last.
     fn again(self) -> Self {
-        Self { next: self.next.saturating_sub(1), held: None, ..self }
+        Self { next: self.next.saturating_sub(1), held: None, is_skipped: false, waits: None, ..self }
     }
 
     fn view(&self) -> BoardTour {
-        BoardTour { place: self.next.max(1), of: self.places.len() }
+        BoardTour { place: self.next.max(1), of: self.places.len(), waits: self.waits }
     }
 
     fn looked(&mut self, look: BoardLook) {
@@ -140,14 +160,21 @@ impl Tour {
 
     /// Whether it has been where it is for long enough.
     fn goes_on(&self, now: Instant) -> bool {
-        let Some(held) = self.held else { return true };
-        let waits_for = match self.looks {
+        let Some(held) = self.held.filter(|_| !self.is_skipped) else { return true };
+        let at_least = match self.looks {
             _ if self.is_done => AT_EACH_PLACE,
             0 => NOBODY_LOOKS,
             LOOKS_IN_VAIN.. => LOOKED_FOR_IN_VAIN,
             _ => LONGEST_AT_A_PLACE,
         };
-        now.saturating_duration_since(held) >= waits_for
+        now.saturating_duration_since(held) >= at_least
+    }
+
+    /// What keeps it where it is, once that takes long.
+    fn waits_for(&self, now: Instant) -> Option<TourWaits> {
+        let is_long = now.saturating_duration_since(self.held?) >= SAID_AFTER;
+        let what = if self.looks == 0 { TourWaits::Look } else { TourWaits::Sight };
+        (is_long && !self.is_done).then_some(what)
     }
 }
 
@@ -174,5 +201,31 @@ mod tests {
         assert!(goes_on_after(&unseen, 5_000), "it is not seen there");
         assert!(goes_on_after(&[], 12_000), "nobody looks");
         assert!(goes_on_after(&[look(300, true)], 12_000), "that was the place before");
+    }
+
+    #[test]
+    fn what_it_waits_for_is_said_and_can_be_skipped() {
+        let begun = Instant::now();
+        let after = |ms: u64| begun + Duration::from_millis(ms);
+        let mut tours = BoardTours::default();
+        tours.begin(vec![Pose::identity(), Pose::identity()]);
+        tours.skip();
+        assert!(
+            matches!(tours.step(begun), TourStep::Holds(_)),
+            "the first place is not skipped before it is reached"
+        );
+        let seen = |tours: &BoardTours| tours.view().expect("it is on its way");
+        assert!(matches!(tours.step(after(3_900)), TourStep::Stays) && seen(&tours).waits.is_none());
+        assert!(matches!(tours.step(after(4_000)), TourStep::Stays));
+        assert_eq!(seen(&tours).waits, Some(TourWaits::Look));
+        tours.looked(BoardLook { captured_at: after(4_100), is_done: false });
+        assert!(matches!(tours.step(after(4_200)), TourStep::Stays));
+        assert_eq!(seen(&tours), BoardTour { place: 1, of: 2, waits: Some(TourWaits::Sight) });
+        tours.skip();
+        assert!(matches!(tours.step(after(4_300)), TourStep::Holds(_)));
+        assert_eq!(seen(&tours), BoardTour { place: 2, of: 2, waits: None });
+        assert!(matches!(tours.step(after(5_000)), TourStep::Stays), "one place at a time");
+        tours.skip();
+        assert!(matches!(tours.step(after(5_100)), TourStep::Ends { places: 2 }));
     }
 }

@@ -41,6 +41,8 @@ pub enum TwinCommand {
     TourFew,
     /// Goes on with showing it where that was broken off.
     TourRest,
+    /// Goes on to the next place, whether or not it was captured where it is.
+    SkipPlace,
     /// Puts the chessboard away.
     HideBoard,
     /// Makes room on the touchscreen, puts it on a block and a weight into the right palm.

@@ -74,6 +74,17 @@ pub struct BoardTour {
     pub place: usize,
     /// Of so many.
     pub of: usize,
+    /// What it waits for there; `None`: nothing that takes long.
+    pub waits: Option<TourWaits>,
+}
+
+/// What the board waits for at a place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TourWaits {
+    /// That somebody looks for it: the machine is busy, or the eyes are closed.
+    Look,
+    /// That both eyes see it sharp and still.
+    Sight,
 }
 
 /// A toy.

@@ -10,8 +10,12 @@ use crate::dynamixel::{BulkItem, Bus, BusError, FaultKind, Instruction, Item};
 const FIRST_ATTEMPT: Duration = Duration::from_millis(100);
 /// When nobody answers, so many are asked singly before the line counts as dead.
 const DEAD_AFTER: usize = 2;
-/// A servo that was given up is asked again every so many cycles.
+/// A servo that was given up is asked again every so many cycles …
 const ASK_AGAIN: u64 = 32;
+/// … and where they are long, so often at least: a busy machine must not take what answers again for silent.
+const ASK_AGAIN_WITHIN: Duration = Duration::from_millis(500);
+/// A servo is silent after this time at the latest, however busy this machine is: nothing rests on its angle any more.
+const LONGEST_SILENCE: Duration = Duration::from_secs(1);
 /// Cycles with an answer to a single read but none to the bulk read after which it is read singly.
 const NO_BULK: u32 = 30;
 
@@ -35,12 +39,15 @@ pub(super) struct Exchange {
     pub step_rad: f64,
     pub silence: Silence,
     pub(super) turn: u64,
+    /// When who was left out was asked last, in which cycle, and how many were by then.
+    asked_silent: (Instant, u64, usize),
 }
 
 impl Exchange {
     pub fn new(bus: Bus, units: Vec<ServoUnit>, speed_rad_s: f64, step_rad: f64, silence: Silence) -> Self {
         let slots = units.into_iter().map(Slot::new).collect();
-        Self { bus, slots, speed_rad_s, step_rad, silence, turn: 0 }
+        let asked_silent = (Instant::now(), 0, 0);
+        Self { bus, slots, speed_rad_s, step_rad, silence, turn: 0, asked_silent }
     }
 
     /// Reads every servo in use once, repeats what failed until `deadline`. What is read last is what
@@ -197,10 +204,13 @@ impl Exchange {
             return Ok(());
         }
         let every = (ASK_AGAIN / silent.len() as u64).max(1);
-        if !self.turn.is_multiple_of(every) {
+        let (asked_at, asked_in, asked) = self.asked_silent;
+        let within = ASK_AGAIN_WITHIN.div_f64(silent.len() as f64);
+        if self.turn - asked_in < every && asked_at.elapsed() < within {
             return Ok(());
         }
-        let i = silent[(self.turn / every) as usize % silent.len()];
+        self.asked_silent = (Instant::now(), self.turn, asked.wrapping_add(1));
+        let i = silent[asked % silent.len()];
         let id = self.slots[i].unit.id();
         let deadline = Instant::now() + FIRST_ATTEMPT;
         if let Ok(found) = self.bus.identify_once(id, deadline)? {
@@ -208,6 +218,8 @@ impl Exchange {
             if self.slots[i].identity == Identity::Right {
                 self.read_one(i, deadline, &mut vec![])?;
             }
+        } else {
+            self.slots[i].in_vain = self.slots[i].in_vain.saturating_add(1);
         }
         Ok(())
     }
@@ -230,6 +242,8 @@ impl Exchange {
 
     fn note_silence(&mut self) {
         let Silence { cycles, time } = self.silence;
+        // Where answers came late lately, the next ones are waited for as much longer: a second at most.
+        let time = time.mul_f64(self.bus.patience()).min(LONGEST_SILENCE.max(time));
         for slot in &mut self.slots {
             let by_servo = &self.bus.counts().by_servo;
             let late = by_servo.get(&slot.unit.id()).map_or(0, |counts| counts.of(FaultKind::Late));

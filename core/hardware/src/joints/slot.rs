@@ -19,9 +19,13 @@ const NEAR: Duration = Duration::from_millis(300);
 const KNOWN_FOR: Duration = Duration::from_secs(1);
 /// An answer that came too late is a sign of life for this long: without it the servo is silent.
 const LATE_COUNTS_FOR: Duration = Duration::from_millis(500);
-/// One that was left out is asked twice a second: an answer of it that came too late tells for this long that its power
-/// and cable are there.
+/// One that was left out is asked twice a second where the machine gets around to it: an answer of it that came too late
+/// tells for this long that its power and cable are there …
 const LOAD_COUNTS_FOR: Duration = Duration::from_secs(2);
+/// … and, where cycles are long, until it was asked in vain so often: time alone says nothing of who was hardly asked.
+const LOAD_COUNTS_TIMES: u32 = 4;
+/// The same of one that is in use, before it is left out.
+const LATE_COUNTS_TIMES: u32 = 3;
 /// Less force than this share of the stall torque is none.
 const NO_FORCE: f64 = 0.02;
 
@@ -70,6 +74,8 @@ pub(super) struct Slot {
     pub late_at: Option<Instant>,
     /// Such answers so far.
     pub late_answers: u64,
+    /// Questions to it alone since the last answer, in time or not, that it has not answered.
+    pub in_vain: u32,
     /// Left out for its silence; asked again now and then.
     pub silent: bool,
     /// It was in hand when it fell silent.
@@ -117,6 +123,7 @@ impl Slot {
             missed: 0,
             late_at: None,
             late_answers: 0,
+            in_vain: 0,
             silent: true,
             let_go: false,
             verify: false,
@@ -166,20 +173,29 @@ impl Slot {
     pub fn note_late(&mut self, late_answers: u64) {
         if late_answers > self.late_answers {
             self.late_at = Some(Instant::now());
+            self.in_vain = 0;
         }
         self.late_answers = late_answers;
     }
 
     /// Whether it answers, but later than this machine or the line can wait.
     pub fn answers_late(&self) -> bool {
-        self.late_at.is_some_and(|at| at.elapsed() < LATE_COUNTS_FOR)
+        self.was_late(LATE_COUNTS_FOR, LATE_COUNTS_TIMES)
+    }
+
+    /// Whether an answer came too late, and no longer ago, or not asked in vain more often since.
+    fn was_late(&self, at_most: Duration, times: u32) -> bool {
+        self.late_at.is_some_and(|at| at.elapsed() < at_most || self.in_vain < times)
     }
 
     /// Why it is not heard: one that was heard lately, and was asked too seldom since to be left out for its silence, is
     /// no more to blame than one that answers late. A program that runs would have left it out by now.
     pub fn unheard(&self) -> Unheard {
-        let was_late = self.late_at.is_some_and(|at| at.elapsed() < LOAD_COUNTS_FOR);
-        if self.in_use() || was_late { Unheard::TooBusy } else { Unheard::Silent }
+        if self.in_use() || self.was_late(LOAD_COUNTS_FOR, LOAD_COUNTS_TIMES) {
+            Unheard::TooBusy
+        } else {
+            Unheard::Silent
+        }
     }
 
     /// Whether its torque is on and it is ours to command.
@@ -227,7 +243,7 @@ impl Slot {
         reading.temperature_c = measured.temperature_c;
         reading.force = measured.torque_limit;
         reading.read_at = Some(Instant::now());
-        (self.missed, self.silent, self.read_in) = (0, false, cycle);
+        (self.missed, self.in_vain, self.silent, self.read_in) = (0, 0, false, cycle);
         self.take_torque(holds);
     }
 
@@ -257,6 +273,7 @@ impl Slot {
     /// It was asked for itself and did not answer.
     pub fn miss(&mut self) {
         self.missed = self.missed.saturating_add(1);
+        self.in_vain = self.in_vain.saturating_add(1);
         self.verify = true;
         self.found_at_start = false;
         self.complaint = None;
@@ -330,7 +347,41 @@ mod tests {
         silent.late_at = Instant::now().checked_sub(Duration::from_millis(900));
         assert_eq!(silent.unheard(), Unheard::TooBusy, "it is asked but twice a second");
         silent.late_at = Instant::now().checked_sub(LOAD_COUNTS_FOR);
+        silent.in_vain = LOAD_COUNTS_TIMES;
         assert_eq!(silent.unheard(), Unheard::Silent, "nothing has come since");
+    }
+
+    /// Cycles of a tenth of a second: whoever was left out has its turn every three seconds.
+    #[test]
+    fn where_cycles_are_long_it_counts_how_often_it_was_asked_in_vain() {
+        let mut slot = neck(Duration::from_secs(20), 25);
+        slot.fall_silent();
+        slot.note_late(1);
+        for asked in 0..LOAD_COUNTS_TIMES {
+            slot.late_at = Instant::now().checked_sub(Duration::from_secs(3 * u64::from(asked)));
+            assert_eq!(slot.unheard(), Unheard::TooBusy, "asked {asked} times since");
+            slot.in_vain += 1;
+        }
+        slot.late_at = Instant::now().checked_sub(Duration::from_secs(12));
+        assert_eq!(slot.unheard(), Unheard::Silent);
+        // Another answer that is late, and all is as it was.
+        slot.note_late(2);
+        assert_eq!((slot.unheard(), slot.in_vain), (Unheard::TooBusy, 0));
+    }
+
+    /// One that is asked once a second is not left out between two of its late answers, but is after three questions in vain.
+    #[test]
+    fn one_that_is_asked_seldom_and_answers_late_is_not_left_out() {
+        let mut slot = neck(Duration::from_millis(800), 10);
+        slot.note_late(1);
+        slot.late_at = Instant::now().checked_sub(Duration::from_millis(900));
+        for _ in 0..LATE_COUNTS_TIMES {
+            assert!(slot.answers_late());
+            slot.miss();
+        }
+        assert!(!slot.answers_late());
+        let never = neck(Duration::from_millis(800), 10);
+        assert!(!never.answers_late(), "a silent one is not spared");
     }
 
     #[test]

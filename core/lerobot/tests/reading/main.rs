@@ -5,13 +5,14 @@ mod others;
 
 use std::fs::File;
 use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use parquet::file::reader::{FileReader as _, SerializedFileReader};
 use parquet::record::{Field, Row};
 use plumbline_lerobot::{ExportError, NotCommanded, Options, export};
 use plumbline_model::formats::native;
 use plumbline_model::robot::default_rig;
-use plumbline_model::{StereoCalibration, Unattended};
+use plumbline_model::{Cancelled, JobContext, StereoCalibration, Unattended};
 use serde_json::{Value, json};
 
 use crate::made::{
@@ -123,6 +124,35 @@ fn what_cannot_be_exported_is_said() {
     assert!(matches!(full, Err(ExportError::NotEmpty(_))), "{full:?}");
     let none = export(&folder.path().join("none.mcap"), &folder.path().join("set"), &options, &Unattended);
     assert!(matches!(none, Err(ExportError::Recording(_))), "{none:?}");
+}
+
+/// Lets so much be done, then it is cancelled.
+struct CancelledLater(AtomicUsize);
+
+impl JobContext for CancelledLater {
+    fn checkpoint(&self) -> Result<(), Cancelled> {
+        let left = self.0.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(1));
+        left.map(drop).map_err(|_| Cancelled)
+    }
+
+    fn report(&self, _: f64, _: &str) {}
+}
+
+#[test]
+fn of_a_set_that_was_cancelled_nothing_stays_and_it_can_be_written_there_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let log = folder.path().join("log.mcap");
+    recorded(&log);
+    let options = Options { task: "x", cameras: None };
+    let [new, empty] = ["new", "empty"].map(|name| folder.path().join(name));
+    std::fs::create_dir(&empty).expect("made");
+    for (set, was_there) in [(&new, false), (&empty, true)] {
+        let cancelled = export(&log, set, &options, &CancelledLater(AtomicUsize::new(1)));
+        assert!(matches!(cancelled, Err(ExportError::Cancelled(_))), "{cancelled:?}");
+        assert_eq!(set.is_dir(), was_there);
+        assert!(!was_there || set.read_dir().expect("there").next().is_none());
+        export(&log, set, &options, &Unattended).expect("exported");
+    }
 }
 
 #[test]

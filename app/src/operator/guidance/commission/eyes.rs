@@ -1,5 +1,6 @@
 //! The eyes on the way: the board is shown to them, solved, accepted.
 
+use jiff::Timestamp;
 use plumbline_engine::View;
 use plumbline_engine::view::SourceStatus;
 use plumbline_widgets::format;
@@ -22,8 +23,12 @@ pub(super) fn said(view: &View) -> Said {
         return Said::wait("The eyes have to deliver: let the source go on.", None).warn();
     }
     if let Some(proposal) = view.eyes.proposal.as_ref().filter(|proposal| proposal.stale.is_none()) {
-        if let Some(why) = not_offered(&view.eyes) {
-            return Said::press(why, "Discard the proposal", vec![Action::Discard]).warn();
+        if let Some(why) = not_offered(&view.eyes, Timestamp::now()) {
+            let (label, action) = match why.may_be_judged_again {
+                true => (Action::JudgeHealth.label(), Action::JudgeHealth),
+                false => ("Discard the proposal".to_owned(), Action::Discard),
+            };
+            return Said::press(why.sentence, label, vec![action]).warn();
         }
         let verdict = verdict(proposal);
         if verdict.good {

@@ -1,6 +1,7 @@
 //! All points, the one that the others miss by most first.
 
 use egui::{Align2, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
+use plumbline_widgets::steady;
 use plumbline_widgets::theme::{self, Role};
 
 use super::panel::quantity;
@@ -20,14 +21,19 @@ pub(super) fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, rows: &[PointRow]) {
     let mut sorted: Vec<&PointRow> = rows.iter().collect();
     let magnitude = |row: &PointRow| row.error.map_or(-1.0, f64::abs);
     sorted.sort_by(|a, b| magnitude(b).total_cmp(&magnitude(a)));
+    let list = ui.scope_id().with(("worst first", cx.state.models.tables.table));
+    let order = steady::in_order(ui, list, sorted.iter().map(|row| row.index).collect(), ());
+    let sorted: Vec<&PointRow> =
+        order.iter().filter_map(|index| rows.iter().find(|row| row.index == *index)).collect();
     let area =
         ScrollArea::vertical().id_salt("points by error").max_height(HEIGHT).auto_shrink([false, true]);
-    area.show_rows(ui, ROW_HEIGHT, sorted.len(), |ui, visible| {
+    let shown = area.show_rows(ui, ROW_HEIGHT, sorted.len(), |ui, visible| {
         ui.spacing_mut().item_spacing.y = 0.0;
         for row in &sorted[visible] {
             show_row(ui, cx, row);
         }
     });
+    steady::keep(ui, list, order, shown.inner_rect);
 }
 
 fn show_row(ui: &mut Ui, cx: &mut PanelContext<'_>, row: &PointRow) {

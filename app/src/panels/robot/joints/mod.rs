@@ -7,7 +7,7 @@ mod proposing;
 use egui::{RichText, ScrollArea, Ui};
 use plumbline_engine::RobotCommand;
 use plumbline_engine::view::{JointView, RobotView};
-use plumbline_model::robot::{JointIndex, Rig};
+use plumbline_model::robot::JointIndex;
 use plumbline_widgets::format;
 use plumbline_widgets::joint_row::{
     Freshness, JointHistory, JointRow, JointState, ReducedRange, joint_header,
@@ -17,6 +17,7 @@ use plumbline_widgets::theme::{self, Role, space};
 use self::proposing::{OTHER_MOVES_RAD, preview_angle, propose};
 use super::parts::{OLD, refusal_line, stale_line};
 use super::state::Asked;
+use crate::operator::words::robot as words;
 use crate::panels::{PanelContext, padded};
 
 /// Below this width the rows leave out what the inspector says too.
@@ -44,21 +45,11 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             joint_header(ui);
         }
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            for (title, joints) in groups(rig) {
+            for (title, joints) in words::groups(rig) {
                 group(ui, cx, &title, &joints, narrow);
             }
         });
     });
-}
-
-/// Head, then each arm with its hand, as people look at a robot.
-fn groups(rig: &Rig) -> Vec<(String, Vec<JointIndex>)> {
-    let mut groups = vec![("Head".to_owned(), vec![rig.eyes.pan, rig.eyes.tilt])];
-    for arm in &rig.arms {
-        groups.push((arm.title.clone(), arm.joints.clone()));
-        groups.push((format!("{}, hand", arm.title), arm.hand.clone()));
-    }
-    groups
 }
 
 fn group(ui: &mut Ui, cx: &mut PanelContext<'_>, title: &str, joints: &[JointIndex], narrow: bool) {
@@ -113,6 +104,11 @@ fn row(ui: &mut Ui, cx: &mut PanelContext<'_>, joint: &JointView) {
 /// that there is none.
 fn problems_line(ui: &mut Ui, robot: &RobotView) {
     let mut with = robot.joints.iter().filter_map(|joint| Some((joint, joint.problem.as_ref()?)));
+    if let Some(silent) = words::silent_together(robot) {
+        let text = RichText::new(&silent).small().color(Role::Warning.color(theme::tokens(ui)));
+        ui.add(egui::Label::new(text).truncate()).on_hover_text(silent);
+        return;
+    }
     let Some((joint, problem)) = with.next() else {
         let all = format::count(robot.joints.len(), "joint");
         let how = if robot.connection.is_connected() { "without a problem" } else { "as last seen" };

@@ -135,11 +135,15 @@ impl Desk {
 
     /// Pairs come, one a second, until they are judged.
     fn until_judging(&mut self) {
+        self.until_judging_with(&dark());
+    }
+
+    fn until_judging_with(&mut self, images: &[Arc<RgbImage>; 2]) {
         for _ in 0..200 {
             if !self.started.is_empty() {
                 return;
             }
-            self.see(dark());
+            self.see(images.clone());
         }
         panic!("it is never judged");
     }

@@ -62,7 +62,7 @@ pub fn in_use(
         id,
         calibration: Arc::new(calibration),
         accepted,
-        uncertainty: Some(assessment.uncertainty),
+        uncertainty: assessment.uncertainty,
         stated_at_m: STATED_AT_M,
         depth_per_px_m: assessment.depth_per_px_m,
     }

@@ -187,6 +187,10 @@ impl TwinDesk {
                 self.tours.go_on(&self.board_places);
                 Ok(())
             }
+            TwinCommand::SkipPlace => {
+                self.tours.skip();
+                Ok(())
+            }
             TwinCommand::HideBoard => {
                 self.tours.break_off();
                 send(To::HideBoard)

@@ -97,16 +97,20 @@ fn a_tour_of_the_board_that_was_broken_off_goes_on_where_it_was() {
     // Nobody looks: it goes on all the same after a while.
     let begun = Instant::now();
     (0..3).for_each(|i| desk.tick(begun + NOBODY_LOOKS * i, &rig));
-    assert_eq!(desk.view().board_tour, Some(BoardTour { place: 3, of: all }));
+    assert_eq!(desk.view().board_tour, Some(BoardTour { place: 3, of: all, waits: None }));
     desk.control(TwinCommand::TourBoard(false), &rig).expect("as asked");
     assert_eq!((desk.view().board_tour, desk.view().board_places_left), (None, all - 2));
     desk.control(TwinCommand::TourRest, &rig).expect("as asked");
     desk.tick(begun, &rig);
-    assert_eq!(desk.view().board_tour, Some(BoardTour { place: 3, of: all }), "the third once more");
+    assert_eq!(
+        desk.view().board_tour,
+        Some(BoardTour { place: 3, of: all, waits: None }),
+        "the third once more"
+    );
     assert_eq!(desk.view().board_places_left, 0);
     desk.control(TwinCommand::TourBoard(true), &rig).expect("as asked");
     desk.tick(begun, &rig);
-    assert_eq!(desk.view().board_tour, Some(BoardTour { place: 1, of: all }), "all means all");
+    assert_eq!(desk.view().board_tour, Some(BoardTour { place: 1, of: all, waits: None }), "all means all");
 }
 
 #[test]

@@ -254,6 +254,12 @@ impl Bus {
         self.margin -= surplus / MARGIN_DECAY;
     }
 
+    /// How many times longer than usual answers are waited for just now: 1 while none came late.
+    pub(crate) fn patience(&self) -> f64 {
+        let usual_s = self.timing.answer_margin.as_secs_f64();
+        if usual_s > 0.0 { self.margin.as_secs_f64() / usual_s } else { 1.0 }
+    }
+
     /// What is asked now and then, not in every cycle, may wait longer on a busy machine.
     pub(crate) fn be_patient(&mut self, patient: bool) {
         self.patient = patient;
