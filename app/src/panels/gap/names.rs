@@ -200,13 +200,16 @@ fn unexplained(ui: &mut Ui, finding: &Finding) {
     let (is_noise, said) = words::rest(finding);
     let (sign, role) = if is_noise { (Glyph::Check, Role::Accepted) } else { (Glyph::Info, Role::Ink) };
     line(ui, sign, role, &said);
-    ui.label(theme::small(
-        ui,
-        format!(
-            "Probability that something outside of the library is at work: {}.",
-            probability::percent(left.probability)
-        ),
-    ));
+    // Where nothing tells the noise, a rest that looks like none excludes nothing.
+    if finding.comparison.is_noise_known() || finding.verdict == Verdict::NotInLibrary {
+        ui.label(theme::small(
+            ui,
+            format!(
+                "Probability that something outside of the library is at work: {}.",
+                probability::percent(left.probability)
+            ),
+        ));
+    }
     for on in &left.depends_on {
         let formula = on.formula.as_ref().map_or_else(String::new, |formula| format!(" — {formula}"));
         let share = format::percent(on.share);
