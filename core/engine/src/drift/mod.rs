@@ -10,6 +10,7 @@ mod grid_room;
 #[cfg(test)]
 mod grid_tests;
 mod stage;
+mod stated;
 #[cfg(test)]
 mod tests;
 mod unjudged;

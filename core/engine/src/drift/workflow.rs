@@ -11,6 +11,7 @@ use super::DriftAround;
 use super::command::DriftCommand;
 use super::grid_room::{GridRoom, PlacesResult};
 use super::stage::{DriftInput, DriftOutput};
+use super::stated::Stated;
 use super::view::{DriftCourse, DriftPoint, DriftView};
 use super::watch::{EVERY, FIRST, Watch};
 pub use super::work::Context;
@@ -57,6 +58,7 @@ pub struct DriftWorkflow {
     /// The session that was made last, and whether somebody was told of it.
     pub(super) log: Option<(PathBuf, bool)>,
     grid: GridRoom,
+    stated: Stated,
 }
 
 impl DriftWorkflow {
@@ -233,6 +235,8 @@ impl Workflow for DriftWorkflow {
             (Some(_), false) => StepState::Done,
             (None, false) => StepState::NotDone,
         };
+        let stated_m =
+            self.course.as_ref().and_then(|course| self.stated.ninety_five_m(&course.table, around));
         let waits = self.down.clone().or_else(|| around.waits_because().map(str::to_owned));
         Arc::new(DriftView {
             step,
@@ -242,6 +246,7 @@ impl Workflow for DriftWorkflow {
             course: self.course.clone(),
             is_busy: self.logging.is_some() || self.retelling.is_some(),
             unexplained: self.unexplained(around),
+            stated_m,
             log: self.log.as_ref().map(|(log, _)| log.clone()),
             grid: self.grid.view(around),
         })
