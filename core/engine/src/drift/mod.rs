@@ -13,6 +13,7 @@ mod stage;
 mod stated;
 #[cfg(test)]
 mod tests;
+mod told;
 mod unjudged;
 pub mod view;
 mod watch;
@@ -22,5 +23,6 @@ mod workflow;
 pub use around::{BoardAt, DriftAround};
 pub use grid_room::PlacesResult;
 pub use stage::{DriftInput, DriftOutput, DriftStage};
+pub use told::Told;
 pub use unjudged::Unjudged;
-pub use workflow::{DriftWorkflow, Told};
+pub use workflow::DriftWorkflow;
