@@ -1,9 +1,9 @@
 //! What is under way, in the top line on every screen: how far it is, and by a click the way back to it.
 
-use plumbline_engine::View;
 use plumbline_engine::view::{
-    GraspPhase, GraspRun, JobState, JobView, LampState, PartState, TouchPhase, TrialsPhase,
+    GraspPhase, GraspRun, GridDoing, JobState, JobView, LampState, PartState, TouchPhase, TrialsPhase,
 };
+use plumbline_engine::{JobId, View};
 use plumbline_widgets::format;
 use plumbline_widgets::lamp::Health;
 
@@ -20,6 +20,9 @@ pub(super) fn lamp(view: &View) -> Option<TopLamp> {
         .or_else(|| board(view))
         .or_else(|| search(view))
         .or_else(|| training(view))
+        .or_else(|| places(view))
+        .or_else(|| of_job(view, view.scores.evaluating, "Judging", Screen::Scores))
+        .or_else(|| of_job(view, view.recording.exporting, "Export", Screen::Live))
 }
 
 fn under_way(name: &'static str, value: String, fraction: f64, screen: Screen) -> TopLamp {
@@ -123,9 +126,39 @@ fn board(view: &View) -> Option<TopLamp> {
 }
 
 fn search(view: &View) -> Option<TopLamp> {
-    let id = view.gap.searching?;
+    of_job(view, view.gap.searching, "Find", Screen::Gap)
+}
+
+fn of_job(view: &View, id: Option<JobId>, name: &'static str, screen: Screen) -> Option<TopLamp> {
+    let id = id?;
     let fraction = view.jobs.iter().find(|job| job.id == id).map_or(0.0, fraction);
-    Some(under_way("Find", format::percent(fraction), fraction, Screen::Gap))
+    Some(under_way(name, format::percent(fraction), fraction, screen))
+}
+
+/// The 9 by 4 evaluation.
+fn places(view: &View) -> Option<TopLamp> {
+    let run = view.drift.grid.under_way()?;
+    let (value, fraction) = number_of(run.place.saturating_sub(1), run.of);
+    Some(match run.doing {
+        GridDoing::Asks => {
+            waits("Places", value, "The thing has to be laid at the next place.", Screen::Drift)
+        }
+        GridDoing::NotSeen => waits(
+            "Places",
+            value,
+            "The thing was not found: lay it again, or leave the place out.",
+            Screen::Drift,
+        ),
+        GridDoing::NoDetector => waits(
+            "Places",
+            value,
+            "Nothing is being detected: choose a detector on the screen Live.",
+            Screen::Drift,
+        ),
+        GridDoing::Lays | GridDoing::Looks { .. } | GridDoing::Ended => {
+            under_way("Places", value, fraction, Screen::Drift)
+        }
+    })
 }
 
 fn training(view: &View) -> Option<TopLamp> {
@@ -146,7 +179,8 @@ mod tests {
     use std::sync::Arc;
 
     use plumbline_engine::view::{
-        GraspStep, GraspView, HandEyeView, ModelsView, MountTour, MountView, TouchCounts, TouchView,
+        DriftView, GraspStep, GraspView, GridRunView, GridView, HandEyeView, ModelsView, MountTour,
+        MountView, RecordingView, ScoresView, TouchCounts, TouchView,
     };
 
     use super::*;
@@ -185,6 +219,36 @@ mod tests {
         ] {
             assert_eq!(told(&view).map(|(.., goes)| goes), Some(screen));
         }
+    }
+
+    #[test]
+    fn what_is_judged_evaluated_or_exported_stands_there_with_a_way_back() {
+        let run = |doing| GridRunView {
+            object: "tomato",
+            place: 5,
+            of: 36,
+            at_m: [0.3, 0.0],
+            places_by_itself: false,
+            doing,
+            measured: 4,
+            session: None,
+            unkept: None,
+        };
+        let places = |doing| {
+            let grid = GridView { run: Some(run(doing)), ..GridView::default() };
+            View { drift: Arc::new(DriftView { grid, ..DriftView::default() }), ..View::default() }
+        };
+        let looks = places(GridDoing::Looks { looks: 1, of: 3 });
+        assert_eq!(told(&looks), Some(("Places", "5 of 36".to_owned(), Screen::Drift)));
+        assert_eq!(lamp(&places(GridDoing::Asks)).expect("it is under way").health, Health::Warning);
+        assert!(lamp(&places(GridDoing::Ended)).is_none());
+        let id = Some(JobId(7));
+        let scores = Arc::new(ScoresView { evaluating: id, ..ScoresView::default() });
+        let recording = Arc::new(RecordingView { exporting: id, ..RecordingView::default() });
+        let judged = View { scores, ..View::default() };
+        assert_eq!(told(&judged), Some(("Judging", format::percent(0.0), Screen::Scores)));
+        let exported = View { recording, ..View::default() };
+        assert_eq!(told(&exported), Some(("Export", format::percent(0.0), Screen::Live)));
     }
 
     fn grasping(paused: bool) -> View {

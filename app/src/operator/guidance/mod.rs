@@ -6,6 +6,7 @@ mod drift;
 mod gap;
 mod grasp;
 mod handeye;
+mod judged;
 mod models;
 mod robot;
 mod sentence;
@@ -18,12 +19,10 @@ pub use gap::is_of_choice;
 pub use sentence::Guidance;
 pub use touch::{done_of, minutes, wanted, what_moves};
 
-use jiff::Timestamp;
 use plumbline_engine::View;
 use plumbline_engine::view::{CaptureHint, EyesView, Proposal, SourceStatus};
 use plumbline_widgets::format;
 
-use super::words::health::not_offered;
 use super::{Action, CommissionAction, RobotAction, Screen, faults};
 use sentence::say;
 
@@ -46,8 +45,8 @@ pub fn guidance(view: &View, screen: Screen) -> Guidance {
         Screen::Commission => commissioning(view),
         Screen::Live => live(view),
         Screen::Collect => collect(view),
-        Screen::Judge => judge(&view.eyes),
-        Screen::Accept => accept(&view.eyes),
+        Screen::Judge => judged::judge(&view.eyes),
+        Screen::Accept => judged::accept(&view.eyes),
         Screen::Mount => robot::mount(view),
         Screen::Touch => touch::touch(view),
         Screen::Models => models::models(view),
@@ -231,81 +230,6 @@ pub fn hint_text(hint: &CaptureHint) -> String {
         CaptureHint::NothingNew => "The board has been here: move it to the outline.".to_owned(),
         CaptureHint::Ready => "Ready to capture.".to_owned(),
         CaptureHint::Captured { pair } => format!("Captured {pair}."),
-    }
-}
-
-fn judge(eyes: &EyesView) -> Guidance {
-    let count = eyes.collected.len() - dropped(eyes);
-    let Some(proposal) = &eyes.proposal else {
-        return match (&eyes.in_use, count) {
-            (Some(_), _) => say("Nothing is proposed; the calibration in use is shown.")
-                .then("Collect pairs", Action::Go(Screen::Collect)),
-            (None, 0) => say("There is nothing to judge yet: collect pairs first.")
-                .then("Collect pairs", Action::Go(Screen::Collect)),
-            (None, n) => {
-                let pairs = format::count(n, "pair");
-                say(format!("Collected, not solved: {pairs}.")).then(format!("Solve {pairs}"), Action::Solve)
-            }
-        };
-    };
-    if let Some(why) = &proposal.stale {
-        return say(why.clone()).then(format!("Solve {} again", format::count(count, "pair")), Action::Solve);
-    }
-    if let Some(against) = against(eyes) {
-        return against;
-    }
-    let verdict = verdict(proposal);
-    if !verdict.good {
-        return say(verdict.sentence).warn().then("Collect more pairs", Action::Go(Screen::Collect));
-    }
-    if eyes.in_use.is_some() {
-        say("Nothing speaks against this calibration. Next: see what it would change.")
-            .then("Compare with the one in use", Action::Go(Screen::Accept))
-    } else {
-        say("Nothing speaks against this calibration. Look at single pairs, or accept it.")
-            .then("Accept calibration", Action::Accept)
-    }
-}
-
-/// Where the proposal is not offered.
-fn against(eyes: &EyesView) -> Option<Guidance> {
-    let why = not_offered(eyes, Timestamp::now())?;
-    let said = say(why.sentence).warn();
-    Some(match why.may_be_judged_again {
-        true => said.then(Action::JudgeHealth.label(), Action::JudgeHealth),
-        false => said.then("Discard the proposal", Action::Discard),
-    })
-}
-
-fn accept(eyes: &EyesView) -> Guidance {
-    match (&eyes.proposal, &eyes.in_use) {
-        (Some(proposal), _) if proposal.stale.is_some() => {
-            say(proposal.stale.clone().unwrap_or_default()).then("Solve again", Action::Solve)
-        }
-        (Some(proposal), _) => {
-            if let Some(against) = against(eyes) {
-                return against;
-            }
-            let verdict = verdict(proposal);
-            if verdict.good {
-                let changes = proposal.difference.as_ref().and_then(|map| map.greatest_m());
-                let said = match changes {
-                    Some(most_m) => {
-                        format!("Accepting moves points on the table by up to {}.", format::mm(most_m))
-                    }
-                    None => "Accepting puts this calibration in use.".to_owned(),
-                };
-                say(said).then("Accept calibration", Action::Accept)
-            } else {
-                say(verdict.sentence).warn().then("Accept it all the same", Action::Accept)
-            }
-        }
-        (None, Some(_)) => {
-            say("The calibration is in use.").then("Look at the eyes", Action::Go(Screen::Live))
-        }
-        (None, None) => {
-            say("No calibration is in use yet.").then("Collect pairs", Action::Go(Screen::Collect))
-        }
     }
 }
 

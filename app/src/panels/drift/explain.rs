@@ -3,6 +3,7 @@
 use egui::{RichText, Ui};
 use plumbline_engine::View;
 use plumbline_engine::view::{ShownFinding, Subject};
+use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, Role, space};
 
 use crate::operator::{Action, GapAction};
@@ -36,6 +37,9 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     } else if let (Some(_), Some(why)) = (&view.drift.log, &view.gap.failed) {
         ui.label(RichText::new(why).color(Role::Warning.color(theme::tokens(ui))));
     }
+    if let Some(stated_m) = view.drift.stated_m {
+        ui.label(theme::small(ui, stated(stated_m)));
+    }
     ui.horizontal_wrapped(|ui| {
         if found.is_some_and(|found| !found.addable().is_empty()) {
             action_button(ui, cx, GapAction::Add, "Correct from now on");
@@ -47,4 +51,13 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         action_button(ui, cx, Action::ExplainDrift, text);
     });
     ui.add_space(space::XS);
+}
+
+/// How well places are known with the correction, as it says itself.
+fn stated(half_m: [f64; 3]) -> String {
+    let [near, middle, far] = half_m.map(format::cm);
+    format!(
+        "With the correction by time 95 % of places are stated to lie within {near} near, {middle} in the middle, {far} far \
+         of where they come out."
+    )
 }

@@ -10,8 +10,10 @@ mod grid_room;
 #[cfg(test)]
 mod grid_tests;
 mod stage;
+mod stated;
 #[cfg(test)]
 mod tests;
+mod told;
 mod unjudged;
 pub mod view;
 mod watch;
@@ -21,5 +23,6 @@ mod workflow;
 pub use around::{BoardAt, DriftAround};
 pub use grid_room::PlacesResult;
 pub use stage::{DriftInput, DriftOutput, DriftStage};
+pub use told::Told;
 pub use unjudged::Unjudged;
-pub use workflow::{DriftWorkflow, Told};
+pub use workflow::DriftWorkflow;

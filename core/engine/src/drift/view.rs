@@ -27,6 +27,9 @@ pub struct DriftView {
     pub is_busy: bool,
     /// Why it cannot be explained now, a part of a sentence; `None`: it can.
     pub unexplained: Option<&'static str>,
+    /// Where a correction by time is in use, how well places are known with it near, in the middle and far: half of the
+    /// longest axis of what holds 95 % of them, m; `None`: none is, or what it states is not known.
+    pub stated_m: Option<[f64; 3]>,
     /// The session that was made of it last, to be explained.
     pub log: Option<PathBuf>,
     /// The 9 by 4 evaluation.

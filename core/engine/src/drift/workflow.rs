@@ -11,7 +11,8 @@ use super::DriftAround;
 use super::command::DriftCommand;
 use super::grid_room::{GridRoom, PlacesResult};
 use super::stage::{DriftInput, DriftOutput};
-use super::view::{DriftCourse, DriftPoint, DriftView};
+use super::stated::Stated;
+use super::view::{DriftCourse, DriftView};
 use super::watch::{EVERY, FIRST, Watch};
 pub use super::work::Context;
 use super::work::{DriftResult, DriftWork};
@@ -26,27 +27,16 @@ use crate::robot::RobotControl;
 const CLOCK_WAS_SET: &str =
     "The time since the cameras were switched on was set: watching drift begins anew.";
 
-/// What a watch tells of where places are now.
-#[derive(Clone, Copy, Debug)]
-pub enum Told<'a> {
-    /// It has not looked yet.
-    Nothing,
-    /// What was seen is being told with another model.
-    Anew,
-    /// With which model, and the newest look.
-    Newest(&'a Arc<RobotModel>, &'a DriftPoint),
-}
-
 /// Watching drift. There is one at a time, of what is shown.
 #[derive(Clone, Debug, Default)]
 pub struct DriftWorkflow {
     /// Counts watches.
-    number: u64,
+    pub(super) number: u64,
     pub(super) watch: Option<Watch>,
     /// What was seen in the watch under way, else in the last one.
-    course: Option<Arc<DriftCourse>>,
+    pub(super) course: Option<Arc<DriftCourse>>,
     /// The model with which the last watch was told that has ended, and of which source it was.
-    told_with: Option<(Arc<RobotModel>, u64)>,
+    pub(super) told_with: Option<(Arc<RobotModel>, u64)>,
     failed: Option<String>,
     down: Option<String>,
     pub(super) data_dir: PathBuf,
@@ -57,6 +47,7 @@ pub struct DriftWorkflow {
     /// The session that was made last, and whether somebody was told of it.
     pub(super) log: Option<(PathBuf, bool)>,
     grid: GridRoom,
+    stated: Stated,
 }
 
 impl DriftWorkflow {
@@ -68,25 +59,6 @@ impl DriftWorkflow {
     /// Whether it watches.
     pub fn is_watching(&self) -> bool {
         self.watch.is_some()
-    }
-
-    /// Which watch it is, counted, and what it tells, also when it has ended; `None`: there was none, or it was of another
-    /// source than the one `opened` counts: other eyes, or these before.
-    pub fn newest(&self, opened: u64) -> Option<(u64, Told<'_>)> {
-        let (model, watched) = match &self.watch {
-            Some(watch) => (&watch.model, watch.opened),
-            None => self.told_with.as_ref().map(|(model, watched)| (model, *watched))?,
-        };
-        if watched != opened {
-            return None;
-        }
-        let newest = self.course.as_ref().and_then(|course| course.points.last());
-        let told = match newest {
-            _ if self.retelling.is_some() => Told::Anew,
-            Some(newest) => Told::Newest(model, newest),
-            None => Told::Nothing,
-        };
-        Some((self.number, told))
     }
 
     /// Whether the board is to be looked for: nothing is remembered yet.
@@ -233,6 +205,8 @@ impl Workflow for DriftWorkflow {
             (Some(_), false) => StepState::Done,
             (None, false) => StepState::NotDone,
         };
+        let stated_m =
+            self.course.as_ref().and_then(|course| self.stated.ninety_five_m(&course.table, around));
         let waits = self.down.clone().or_else(|| around.waits_because().map(str::to_owned));
         Arc::new(DriftView {
             step,
@@ -242,6 +216,7 @@ impl Workflow for DriftWorkflow {
             course: self.course.clone(),
             is_busy: self.logging.is_some() || self.retelling.is_some(),
             unexplained: self.unexplained(around),
+            stated_m,
             log: self.log.as_ref().map(|(log, _)| log.clone()),
             grid: self.grid.view(around),
         })

@@ -31,7 +31,7 @@ impl EyesWorkflow {
         if look.board != *self.board() {
             return self.hint = None;
         }
-        self.hint_of = around.source.opened;
+        self.hint_of = Some(around.source.opened);
         let size_px = look.frame.left.dimensions();
         self.set_image_size(size_px);
         self.refresh();
@@ -66,8 +66,9 @@ impl EyesWorkflow {
     /// looked for a while, it says nothing.
     pub(super) fn shown_hint(&self, around: &EyesAround, now: Instant) -> Option<CaptureHint> {
         let looked_at = self.last_look.as_ref().map(|look| look.frame.stamp.captured_at);
-        let is_old = looked_at.is_none_or(|at| now.saturating_duration_since(at) > HINT_LASTS);
-        let is_stale = self.hint_of != around.source.opened || is_live(&around.source) && is_old;
+        let is_old = looked_at.is_some_and(|at| now.saturating_duration_since(at) > HINT_LASTS);
+        let is_of_another = self.hint_of.is_some_and(|opened| opened != around.source.opened);
+        let is_stale = is_of_another || is_live(&around.source) && is_old;
         self.hint.clone().filter(|_| !is_stale)
     }
 

@@ -4,12 +4,12 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use jiff::Timestamp;
 use plumbline_model::StereoFrame;
 
+use super::clock::is_live;
 use super::health_by_itself::ByItself;
-use super::health_judged::{Ask, Gathering, Judged, Judging, Of, Then};
-use super::view::{EyesHealth, HealthState};
+use super::health_judged::{Ask, Gathering, Judged, Judging, Of, Then, ToldHealth};
+use super::view::HealthState;
 use super::work::{Context, EyesWork, Health, HealthEnded, Pictures};
 use super::workflow::{EyesAround, EyesWorkflow};
 use crate::ground::jobs::JobId;
@@ -39,8 +39,8 @@ pub(super) struct HealthRoom {
     pub ended: Option<(Of, HealthState)>,
     /// What was judged last: it stands while it is looked at again, and when nothing comes of that.
     pub judged: Option<Judged>,
-    /// What was judged and told last, and when: what nobody asked for and is as it was is not told.
-    told: Option<(Timestamp, Arc<EyesHealth>)>,
+    /// What was judged and told last: what nobody asked for and is as it was is not told.
+    told: Option<ToldHealth>,
 }
 
 impl EyesWorkflow {
@@ -217,7 +217,8 @@ impl EyesWorkflow {
             let says_something =
                 health.in_use.is_good || self.to_be_warm_min(around, context.time.instant).is_none();
             if (is_told || !ask.by_itself) && says_something {
-                self.health.told = Some((context.time.day, health.clone()));
+                let (at, is_live) = (context.time.day, is_live(&around.source));
+                self.health.told = Some(ToldHealth { at, health: health.clone(), is_live });
             }
         }
         // That nothing is seen at night is no news where nobody has asked.
@@ -226,8 +227,8 @@ impl EyesWorkflow {
         }
     }
 
-    /// What was judged and told last, and when.
-    pub fn told_health(&self) -> Option<(Timestamp, Arc<EyesHealth>)> {
+    /// What was judged and told last.
+    pub fn told_health(&self) -> Option<ToldHealth> {
         self.health.told.clone()
     }
 

@@ -82,6 +82,17 @@ pub(super) struct Judged {
     pub then: Then,
 }
 
+/// What was judged and is told to who keeps it.
+#[derive(Clone, Debug)]
+pub struct ToldHealth {
+    /// When.
+    pub at: Timestamp,
+    /// What came out.
+    pub health: Arc<EyesHealth>,
+    /// Whether by what was seen then; else by what was recorded or photographed before.
+    pub is_live: bool,
+}
+
 impl Judged {
     /// When that was, and what has come since.
     pub fn when(&self, around: &EyesAround) -> JudgedWhen {

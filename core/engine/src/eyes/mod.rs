@@ -35,5 +35,6 @@ pub mod work;
 mod workflow;
 
 pub use corners::{CornersInput, CornersStage};
+pub use health_judged::ToldHealth;
 pub use look::Look;
 pub use workflow::{EyesAround, EyesWorkflow};

@@ -76,8 +76,8 @@ pub struct EyesWorkflow {
     /// The newest look, for when capturing is switched on.
     pub(super) last_look: Option<Look>,
     pub(super) hint: Option<CaptureHint>,
-    /// Of which source, counted.
-    pub(super) hint_of: u64,
+    /// Of which source, counted; `None`: nobody has looked yet.
+    pub(super) hint_of: Option<u64>,
     pub(super) is_done_with_board: bool,
     pub(super) captured_at: Option<Instant>,
     pub(super) board_seen: Option<BoardSeen>,
@@ -299,7 +299,7 @@ impl Workflow for EyesWorkflow {
             auto: AutoCapture::default(),
             last_look: None,
             hint: None,
-            hint_of: 0,
+            hint_of: None,
             is_done_with_board: false,
             captured_at: None,
             board_seen: None,

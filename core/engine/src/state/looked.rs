@@ -59,7 +59,7 @@ mod tests {
         let rig = default_rig();
         let manifest = Manifest {
             touchscreen: Some(rig.touchscreen.clone()),
-            chain: Some(Chain { tip: finger.tip().to_owned(), joints: vec![] }),
+            chain: Some(Chain { tip: finger.tip().to_owned(), joints: vec!["r_shoulder_z".to_owned()] }),
             ..Manifest::of_rig(&rig.name, started)
         };
         manifest.write(&session.join(names::MANIFEST)).expect("written");

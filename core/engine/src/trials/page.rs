@@ -1,6 +1,7 @@
 //! The page of an experiment, beside what was published of the robot.
 
 use plumbline_grasp::{Method, PLACES_M};
+use plumbline_model::counted;
 use plumbline_model::robot::Rig;
 use plumbline_report::experiment::{self as page, Position};
 
@@ -22,7 +23,8 @@ const SAME_M: f64 = 1e-6;
 /// What stands on the page.
 pub fn page(experiment: &Experiment, summary: &Summary, rig: &Rig) -> page::Experiment {
     let attempts: usize = summary.methods.values().map(|of| of.attempts).sum();
-    let made = format!("{attempts} attempts at {} positions by the", experiment.positions_m.len());
+    let positions = counted(experiment.positions_m.len(), "position");
+    let made = format!("{} at {positions} by the", counted(attempts, "attempt"));
     let (who, seed) = (&experiment.twin, experiment.seed);
     let mut sentences = match who.strip_prefix(ROBOT) {
         Some(name) => vec![
@@ -41,7 +43,7 @@ pub fn page(experiment: &Experiment, summary: &Summary, rig: &Rig) -> page::Expe
     }
     sentences.extend(not_lifted(experiment, summary));
     if summary.missing > 0 {
-        sentences.push(format!("{} attempts are still to be made.", summary.missing));
+        sentences.push(format!("Still to be made: {}.", counted(summary.missing, "attempt")));
     }
     let corner = |k: usize| {
         let at = rig.touchscreen.corners()[k].coords;

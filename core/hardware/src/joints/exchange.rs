@@ -14,8 +14,9 @@ const DEAD_AFTER: usize = 2;
 const ASK_AGAIN: u64 = 32;
 /// … and where they are long, so often at least: a busy machine must not take what answers again for silent.
 const ASK_AGAIN_WITHIN: Duration = Duration::from_millis(500);
-/// A servo is silent after this time at the latest, however busy this machine is: nothing rests on its angle any more.
-const LONGEST_SILENCE: Duration = Duration::from_secs(1);
+/// A servo that is not heard, not even late, is silent after this time at the latest, however busy this machine is: it is
+/// named within a second.
+const LONGEST_SILENCE: Duration = Duration::from_millis(600);
 /// Cycles with an answer to a single read but none to the bulk read after which it is read singly.
 const NO_BULK: u32 = 30;
 
@@ -242,7 +243,7 @@ impl Exchange {
 
     fn note_silence(&mut self) {
         let Silence { cycles, time } = self.silence;
-        // Where answers came late lately, the next ones are waited for as much longer: a second at most.
+        // Where answers came late lately, the next ones are waited for as much longer.
         let time = time.mul_f64(self.bus.patience()).min(LONGEST_SILENCE.max(time));
         for slot in &mut self.slots {
             let by_servo = &self.bus.counts().by_servo;

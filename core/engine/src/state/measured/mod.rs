@@ -12,7 +12,7 @@ use plumbline_model::touch_plan::Purpose;
 use self::told::{name_of, of_detectors, of_health, of_places, of_trials};
 use super::State;
 use crate::drift::PlacesResult;
-use crate::eyes::view::EyesHealth;
+use crate::eyes::ToldHealth;
 use crate::ground::World;
 use crate::scores::Evaluation;
 use crate::timeline::Measured;
@@ -24,7 +24,7 @@ use crate::trials::view::ShownTrials;
 /// All of it, cheap to compare.
 #[derive(Clone, Debug, Default)]
 pub(super) struct MeasuredNow {
-    health: Option<(Timestamp, Arc<EyesHealth>)>,
+    health: Option<ToldHealth>,
     run: Option<RunStanding>,
     places: Option<PlacesResult>,
     trials: Option<Arc<ShownTrials>>,
@@ -37,7 +37,7 @@ impl MeasuredNow {
             a.map(Arc::as_ptr) == b.map(Arc::as_ptr)
         }
         let of =
-            |now: &Self| (now.health.as_ref().map(|(at, _)| *at), now.judged.as_ref().map(|(at, _)| *at));
+            |now: &Self| (now.health.as_ref().map(|told| told.at), now.judged.as_ref().map(|(at, _)| *at));
         of(self) == of(other)
             && self.run == other.run
             && self.places == other.places
@@ -69,7 +69,7 @@ impl State {
     pub(super) fn told_of(&self, world: World) -> Vec<Measured> {
         let now = self.measured_of(world);
         let mut all = vec![];
-        all.extend(now.health.as_ref().map(|(at, health)| of_health(*at, health)));
+        all.extend(now.health.as_ref().map(of_health));
         all.extend(now.run.as_ref().and_then(|run| self.of_run(world, run)));
         all.extend(now.places.as_ref().map(of_places));
         all.extend(now.trials.as_deref().and_then(of_trials));

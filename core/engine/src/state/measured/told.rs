@@ -6,7 +6,7 @@ use jiff::Timestamp;
 use plumbline_model::counted;
 
 use crate::drift::PlacesResult;
-use crate::eyes::view::EyesHealth;
+use crate::eyes::ToldHealth;
 use crate::scores::Evaluation;
 use crate::timeline::Measured;
 use crate::timeline::view::{Figure, Subject};
@@ -22,11 +22,15 @@ fn worst(off_m: [f64; 3]) -> f64 {
 }
 
 /// Whether the calibration in use holds.
-pub(super) fn of_health(at: Timestamp, health: &EyesHealth) -> Measured {
+pub(super) fn of_health(told: &ToldHealth) -> Measured {
+    let ToldHealth { at, health, is_live } = told;
     let [near, middle, far] = health.in_use.off_m.map(|off_m| format!("{:.1} cm", 100.0 * off_m));
     let holds = if health.in_use.is_good { "still good" } else { "not good any more" };
-    let in_use =
-        format!("calibration in use {holds}: places off by {near} near, {middle} in the middle, {far} far");
+    // Images of another day say how the eyes were then.
+    let by = if *is_live { "" } else { ", by images taken before" };
+    let in_use = format!(
+        "calibration in use {holds}{by}: places off by {near} near, {middle} in the middle, {far} far"
+    );
     let from = format!(
         "how far off places come out where that is most, by {} in {}",
         counted(health.places, "place"),
@@ -41,7 +45,7 @@ pub(super) fn of_health(at: Timestamp, health: &EyesHealth) -> Measured {
         None => (None, in_use_m, from),
     };
     let title = if health.proposed.is_some() { format!("{in_use}; one proposed beside it") } else { in_use };
-    Measured { subject: Subject::Health, id: at.to_string(), at: Some(at), title, before, after, basis }
+    Measured { subject: Subject::Health, id: at.to_string(), at: Some(*at), title, before, after, basis }
 }
 
 /// What the 9 by 4 evaluation gave.
@@ -119,8 +123,10 @@ pub(super) fn of_detectors(at: Timestamp, judged: &Evaluation) -> Option<Measure
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
-    use crate::eyes::view::{HealthFigures, ProposalHealth};
+    use crate::eyes::view::{EyesHealth, HealthFigures, ProposalHealth};
 
     fn figures(far_m: f64) -> HealthFigures {
         HealthFigures {
@@ -135,7 +141,10 @@ mod tests {
     #[test]
     fn health_is_told_by_where_places_are_off_most_and_a_proposal_stands_beside_what_is_in_use() {
         let mut health = EyesHealth { in_use: figures(0.021), proposed: None, pairs: 4, places: 120 };
-        let alone = of_health(Timestamp::UNIX_EPOCH, &health);
+        let told = |health: EyesHealth, is_live| {
+            of_health(&ToldHealth { at: Timestamp::UNIX_EPOCH, health: Arc::new(health), is_live })
+        };
+        let alone = told(health, true);
         assert_eq!((alone.before, alone.after), (None, Figure::Meters(0.021)));
         assert!(
             alone.title.contains("not good any more") && alone.title.contains("2.1 cm far"),
@@ -143,7 +152,10 @@ mod tests {
             alone.title
         );
         health.proposed = Some((figures(0.006), ProposalHealth::Better));
-        let both = of_health(Timestamp::UNIX_EPOCH, &health);
+        let both = told(health, true);
+        assert!(!both.title.contains("taken before"), "{}", both.title);
+        let recorded = told(health, false);
+        assert!(recorded.title.contains("by images taken before: places off"), "{}", recorded.title);
         assert_eq!((both.before, both.after), (Some(Figure::Meters(0.021)), Figure::Meters(0.006)));
         assert!(both.basis.contains("120 places in 4 pairs") && both.basis.contains("the one proposed"));
     }
