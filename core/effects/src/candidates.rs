@@ -16,6 +16,8 @@ const SAME_PLACE_M: f64 = 0.02;
 /// Estimates of fewer places do not tell an eye that rolls from one that turns sideways, nor one that pitches from both that
 /// nod: image points do.
 const ROLL_SHOWS_AT: usize = 3;
+/// A joint of the neck that moved by less shows no zero of its own, rad.
+const NECK_MOVED_RAD: f64 = 0.02;
 
 impl Effect {
     /// Every effect, at every site and in every shape of a grid, that these rows could show: by
@@ -31,6 +33,7 @@ impl Effect {
                 let in_sets = known.eye_sets.iter().filter_map(|set| Self::in_set(*kind, set)).collect();
                 [Self::sites(*kind, arm, eyes), in_sets].concat()
             })
+            .filter(|effect| known.has_own_name(effect))
             .flat_map(|effect| known.shapes(effect))
             .map(|effect| match eyes {
                 Some(eyes) => effect.beside(&eyes.calibrated_at),
@@ -79,6 +82,7 @@ impl Known {
             eyes: !of_eyes.is_empty(),
             watched: of_eyes.iter().any(|row| row.stand.is_some()),
             roll_shows: measurements.has(What::EyePoints) || places(&of_eyes) >= ROLL_SHOWS_AT,
+            neck_moved: neck_moved(&of_eyes),
             only_watched: !of_eyes.is_empty() && of_eyes.iter().all(|row| row.stand.is_some()),
             eye_sets: measurements.sets_of_eyes(),
             background: of_eyes.iter().any(|row| row.background_m.is_some()),
@@ -124,6 +128,15 @@ fn places(rows: &[&Observation]) -> usize {
         }
     }
     known.len()
+}
+
+/// Which joints of the neck moved from row to row.
+fn neck_moved(rows: &[&Observation]) -> Vec<bool> {
+    let joints = rows.iter().map(|row| row.neck_rad.len()).max().unwrap_or(0);
+    let of = |joint: usize| rows.iter().filter_map(move |row| row.neck_rad.get(joint).copied());
+    let reach =
+        |joint: usize| of(joint).fold((f64::MAX, f64::MIN), |(low, high), rad| (low.min(rad), high.max(rad)));
+    (0..joints).map(reach).map(|(low, high)| high - low > NECK_MOVED_RAD).collect()
 }
 
 fn torques(measurements: &Measurements, row: &Observation) -> Option<Vec<f64>> {

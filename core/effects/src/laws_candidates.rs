@@ -85,6 +85,25 @@ fn largest_change(measurements: &Measurements, effect: &Effect, values: Vec<f64>
 }
 
 #[test]
+fn a_neck_that_stands_still_shows_no_zeros_and_one_that_moves_does() {
+    let mut measurements = everything(24);
+    let of_neck = |measurements: &Measurements| -> Vec<String> {
+        let all = Effect::candidates(measurements).into_iter();
+        all.filter(|effect| effect.kind == Kind::HeadJoint).map(|effect| effect.site).collect()
+    };
+    assert_eq!(of_neck(&measurements).len(), 2);
+    // The first joint stands still, but for the noise of its encoder.
+    for (i, row) in measurements.rows.iter_mut().enumerate() {
+        if let Some(pan) = row.neck_rad.first_mut() {
+            *pan = 0.2 + 0.002 * wave(i, 5);
+        }
+    }
+    assert_eq!(of_neck(&measurements), ["head_y"]);
+    let mounts = Effect::candidates(&measurements).into_iter().filter(|one| one.kind == Kind::CameraMount);
+    assert_eq!(mounts.count(), 1, "what the zero does is the mount's");
+}
+
+#[test]
 fn every_kind_is_a_candidate_where_rows_can_show_it() {
     let measurements = everything(60);
     let candidates = Effect::candidates(&measurements);

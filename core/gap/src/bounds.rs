@@ -156,9 +156,9 @@ pub(crate) fn still_structured(found: &mut Found, used: &Measurements, compared:
 /// Something unknown is at work beside what was found: names are less sure than they look.
 fn misled(found: &mut Found, probability: f64) {
     let unknown = &mut found.unexplained.probability;
-    let before = if found.verdict == Verdict::NotInLibrary { *unknown } else { 0.0 };
+    let before = *unknown;
     *unknown = unknown.max(probability);
-    let less = (1.0 - search::MISLED * *unknown) / (1.0 - search::MISLED * before);
+    let less = search::still_right(*unknown) / search::still_right(before);
     for effect in &mut found.effects {
         effect.probability *= less;
         effect.class_probability *= less;

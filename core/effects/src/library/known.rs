@@ -40,6 +40,8 @@ pub(crate) struct Known {
     pub(crate) watched: bool,
     /// What was seen of them tells an eye that rolls from others.
     pub(crate) roll_shows: bool,
+    /// Which joints of the neck moved.
+    pub(crate) neck_moved: Vec<bool>,
     /// They watched nothing else: what is constant there has no name.
     pub(crate) only_watched: bool,
     /// Labels of the sets in which the eyes measured, where an eye may have turned from one to the next.
@@ -81,6 +83,13 @@ impl Known {
     /// Whether joints were held long enough to creep.
     pub(crate) fn is_held(&self) -> bool {
         self.longest_hold_s >= SHORTEST_HOLD_S
+    }
+
+    /// Whether an effect has a name of its own in these rows: the zero of a joint of the neck that stood still all the
+    /// while is how the eyes are mounted.
+    pub(crate) fn has_own_name(&self, effect: &Effect) -> bool {
+        effect.kind != Kind::HeadJoint
+            || effect.joint.is_none_or(|joint| self.neck_moved.get(joint).copied().unwrap_or(true))
     }
 
     /// The effect in every shape that is tried.

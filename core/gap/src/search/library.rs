@@ -61,13 +61,20 @@ const ONE_LATER_THAN_ALL: f64 = 0.3;
 /// Shapes (moments in s, torques in N m, orders) closer than this are the same.
 const SAME_SHAPE: f64 = 1e-6;
 
+/// How much less probable every further eye is that was knocked while one set was measured, than the first: one accident
+/// says nothing of another one. An eye that stood otherwise in several sets follows something else.
+const KNOCKED_AGAIN: f64 = 0.02;
+
 /// How much more probable beforehand a set is for what goes together in it, log.
 pub(super) fn together(set: &[usize], blocks: &[Block]) -> f64 {
+    let count = |kind: Kind| set.iter().filter(|&&block| blocks[block].kind == Some(kind)).count();
+    let again = count(Kind::EyeKnock).saturating_sub(1);
+    let of_knocks = again as f64 * KNOCKED_AGAIN.ln();
     if !set.iter().any(|&block| blocks[block].is_of_all) {
-        return 0.0;
+        return of_knocks;
     }
-    let later = set.iter().filter(|&&block| blocks[block].kind == Some(Kind::EarlyLog)).count() - 1;
-    later as f64 * (ONE_LATER_THAN_ALL / ONE_LOGGED_EARLY).ln()
+    let later = count(Kind::EarlyLog) - 1;
+    of_knocks + later as f64 * (ONE_LATER_THAN_ALL / ONE_LOGGED_EARLY).ln()
 }
 
 /// The candidates of a search.
@@ -178,6 +185,20 @@ mod tests {
         let (zeros, zero) = (place(Kind::JointZero, true), place(Kind::JointZero, false));
         assert!(zeros.excludes(zero) && zero.excludes(zeros));
         assert!(!zeros.excludes(place(Kind::AxisSkew, false)) && !zero.excludes(place(Kind::AxisSkew, true)));
+    }
+
+    #[test]
+    fn an_eye_that_was_knocked_again_and_again_follows_something_else() {
+        let rig = Rig::built_in("nico").expect("comes along");
+        let eyes = plumbline_effects::eyes::Eyes::of_rig(&rig).expect("eyes");
+        let yaw = Library::with(Effect::sites(Kind::EyeYaw, None, Some(&eyes))).blocks.swap_remove(0);
+        let of = |name: usize, kind: Kind| Block { name, kind: Some(kind), ..yaw.clone() };
+        let blocks = [Kind::EyeYaw, Kind::EyeKnock, Kind::EyeKnock, Kind::EyeKnock];
+        let blocks: Vec<Block> = blocks.into_iter().enumerate().map(|(k, kind)| of(k, kind)).collect();
+        let log_prior = |set: &[usize]| together(set, &blocks);
+        assert!(log_prior(&[1]).abs() < 1e-12 && log_prior(&[0, 1]).abs() < 1e-12);
+        assert!((log_prior(&[1, 2]) - KNOCKED_AGAIN.ln()).abs() < 1e-12);
+        assert!((log_prior(&[0, 1, 2, 3]) - 2.0 * KNOCKED_AGAIN.ln()).abs() < 1e-12);
     }
 
     #[test]

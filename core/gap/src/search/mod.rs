@@ -43,7 +43,7 @@ use explore::Explored;
 use finish::Finish;
 use library::Library;
 use look::Look;
-pub(crate) use naming::MISLED;
+pub(crate) use naming::still_right;
 use refit::refit;
 
 /// Times that the model is linearized anew, at the effects found before.
