@@ -64,7 +64,12 @@ pub fn export(
     options: &Options<'_>,
     context: &dyn JobContext,
 ) -> Result<Exported, ExportError> {
-    if folder.read_dir().is_ok_and(|mut inside| inside.next().is_some()) {
+    // A folder that cannot be looked into may hold anything.
+    let is_free = match folder.read_dir() {
+        Ok(mut inside) => inside.next().is_none(),
+        Err(why) => why.kind() == std::io::ErrorKind::NotFound,
+    };
+    if !is_free {
         return Err(ExportError::NotEmpty(folder.to_owned()));
     }
     let was_there = folder.is_dir();

@@ -184,8 +184,8 @@ fn other_size(stands: &Stands, name: &str) -> Option<String> {
     let (share, size) = (100.0 * by.abs(), if by > 0.0 { "larger" } else { "smaller" });
     let (sigma, class) = (100.0 * stands.scale_sigma, name.to_lowercase());
     Some(format!(
-        "It is {share:.0} ± {sigma:.0} % {size} than the {class} that is known: another toy, or something else that \
-         is taken for one. Its place and its height go by the size that is seen."
+        "It is {share:.0} ± {sigma:.0} % {size} than the {class} that is known: another toy, something else that is \
+         taken for one, or a part of it is hidden. Its place and its height go by the size that is seen."
     ))
 }
 

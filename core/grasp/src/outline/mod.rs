@@ -33,9 +33,12 @@ const SCALES: std::ops::RangeInclusive<f64> = 0.5..=2.0;
 pub const HEIGHT_SIGMA_M: f64 = 0.002;
 /// A box that ends so near to the border of its image is cut off, px.
 const BORDER_PX: f64 = 1.5;
-/// A box that differs from the outline by more than this, px and share, is of another thing, or of a part of it.
-const OTHER_SIZE_PX: f64 = 3.0;
-const OTHER_SIZE: f64 = 0.25;
+/// A box that differs by more than this, px and share, from the outline of a thing of the size that was found is of
+/// another thing, or of a part of it: what is hidden in part is too narrow or too low for its size.
+const OTHER_SIZE_PX: f64 = 2.0;
+const OTHER_SIZE: f64 = 0.06;
+/// Things of a class that differ from what is known by more, share, are other things, or parts of them.
+const OTHER_SCALE: f64 = 2.0 * SCALE_SIGMA;
 /// For differences, m.
 const STEP_M: f64 = 0.001;
 /// See [`STEP_M`].
@@ -180,7 +183,7 @@ impl Boxes<'_> {
     pub(crate) fn fit(&self, model: &RobotModel, thing: &Thing, found: &OnTable) -> bool {
         let state = State { scale: found.scale, ..State::at(found.xy_m) };
         let Some(extents) = self.extents(model, thing, &state, 0.0) else { return false };
-        let mut fit = true;
+        let mut fit = (found.scale - 1.0).abs() < OTHER_SCALE;
         for eye in Eye::BOTH {
             let (Some(seen_px), Some((low, high))) = (self.boxes_px[eye.index()], extents[eye.index()])
             else {

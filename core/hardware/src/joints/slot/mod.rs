@@ -194,7 +194,8 @@ impl Slot {
     /// Why it is not heard: one that was heard lately, and was asked too seldom since to be left out for its silence, is
     /// no more to blame than one that answers late. A program that runs would have left it out by now.
     pub fn unheard(&self) -> Unheard {
-        if self.in_use() || self.was_late(LOAD_COUNTS_FOR, LOAD_COUNTS_TIMES) {
+        // Nobody asks one that is barred: what came of it once says nothing of now.
+        if !self.is_barred() && (self.in_use() || self.was_late(LOAD_COUNTS_FOR, LOAD_COUNTS_TIMES)) {
             Unheard::TooBusy
         } else {
             Unheard::Silent
@@ -229,6 +230,7 @@ impl Slot {
         self.alarm = status.error.is_alarm();
         let Some(ticks) = measured.ticks else {
             self.missed = self.missed.saturating_add(1);
+            self.in_vain = self.in_vain.saturating_add(1);
             self.complaint = Some("its position is out of range: take it out of multi-turn mode".to_owned());
             return;
         };
@@ -312,7 +314,7 @@ impl Slot {
     /// It is never written to again, until a scan finds who should be there.
     pub fn bar(&mut self, bar: Bar) {
         self.fall_silent();
-        self.silent = true;
+        (self.silent, self.late_at) = (true, None);
         self.identity = Identity::Barred(bar);
     }
 }
