@@ -6,7 +6,7 @@ use plumbline::{Action, Screen, WindowSettings};
 use plumbline_engine::view::{Growth, RecordingView, ReplayView, SourceStatus, SourceView};
 use plumbline_engine::{Command, JobId, RecordingCommand, SourceCommand, SourceSpec, View};
 
-use crate::fake::{Fake, click, says, shows};
+use crate::fake::{Fake, click, click_containing, says, shows};
 
 fn played(growth: Growth) -> View {
     let replay = ReplayView {
@@ -48,7 +48,7 @@ fn a_recording_that_is_open_is_exported_as_a_data_set() {
     let fake = Fake::over(opened());
     let mut window = fake.window(WindowSettings { screen: Screen::Live, ..WindowSettings::default() });
     click(&mut window, "World: recording grasped");
-    click(&mut window, "Export as LeRobot data set…");
+    click_containing(&mut window, "Export as LeRobot data set");
     assert!(says(&window, "one episode with both eyes") && says(&window, "What was being done"));
     fake.take_sent();
     click(&mut window, "Write the data set");
