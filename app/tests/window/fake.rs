@@ -123,6 +123,13 @@ pub fn click(harness: &mut Harness<'_, PlumblineWindow>, label: &str) {
     harness.run_steps(3);
 }
 
+/// Clicks what has these words in its label: a menu's line has its shortcut there, too.
+pub fn click_containing(harness: &mut Harness<'_, PlumblineWindow>, words: &str) {
+    let found = harness.get_all_by_label_contains(words).next();
+    found.unwrap_or_else(|| panic!("nothing says {words:?}")).click();
+    harness.run_steps(3);
+}
+
 /// Whether something has this label.
 pub fn shows(harness: &Harness<'_, PlumblineWindow>, label: &str) -> bool {
     harness.query_all_by_label(label).next().is_some()
