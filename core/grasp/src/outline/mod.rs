@@ -35,7 +35,7 @@ pub const HEIGHT_SIGMA_M: f64 = 0.002;
 const BORDER_PX: f64 = 1.5;
 /// A box that differs by more than this, px and share, from the outline of a thing of the size that was found is of
 /// another thing, or of a part of it: what is hidden in part is too narrow or too low for its size.
-const OTHER_SIZE_PX: f64 = 2.0;
+const OTHER_SIZE_PX: f64 = 3.0;
 const OTHER_SIZE: f64 = 0.06;
 /// Things of a class that differ from what is known by more, share, are other things, or parts of them.
 const OTHER_SCALE: f64 = 2.0 * SCALE_SIGMA;
