@@ -33,10 +33,11 @@ const SCALES: std::ops::RangeInclusive<f64> = 0.5..=2.0;
 pub const HEIGHT_SIGMA_M: f64 = 0.002;
 /// A box that ends so near to the border of its image is cut off, px.
 const BORDER_PX: f64 = 1.5;
-/// A box that differs by more than this, px and share, from the outline of a thing of the size that was found is of
-/// another thing, or of a part of it: what is hidden in part is too narrow or too low for its size.
-const OTHER_SIZE_PX: f64 = 3.0;
-const OTHER_SIZE: f64 = 0.06;
+/// Shapes are simpler than things: what the size of an outline is off by beside that of its box, share.
+const SHAPE_SIGMA: f64 = 0.03;
+/// Boxes whose sizes are this much less likely than those of a thing of the size that was found (χ² of four numbers, one in
+/// three hundred) are of another thing, or of a part of it: what is hidden in part is too narrow or too low for its size.
+const MOST_UNLIKELY: f64 = 16.0;
 /// Things of a class that differ from what is known by more, share, are other things, or parts of them.
 const OTHER_SCALE: f64 = 2.0 * SCALE_SIGMA;
 /// For differences, m.
@@ -62,6 +63,8 @@ pub struct OnTable {
     pub scale: f64,
     /// Standard deviation of `scale`.
     pub scale_sigma: f64,
+    /// How much wider than its outline the boxes seem to be drawn on every side, px.
+    pub margin_px: f64,
     /// How far it moves where `scale` is larger by `scale_sigma`, m.
     pub by_scale_m: Vector2<f64>,
 }
@@ -147,8 +150,8 @@ impl Boxes<'_> {
         let covariance_m2 = inverse.fixed_view::<2, 2>(0, 0) + by_height_m * by_height_m.transpose();
         let scale_sigma = inverse[(2, 2)].max(0.0).sqrt();
         let by_scale_m = Vector2::new(inverse[(0, 2)], inverse[(1, 2)]) / scale_sigma;
-        let State { xy_m, scale, .. } = *state;
-        Some(OnTable { xy_m, covariance_m2, by_height_m, scale, scale_sigma, by_scale_m })
+        let State { xy_m, scale, margin_px } = *state;
+        Some(OnTable { xy_m, covariance_m2, by_height_m, scale, scale_sigma, margin_px, by_scale_m })
     }
 
     fn normal(&self, model: &RobotModel, thing: &Thing, state: &State) -> Option<Normal> {
@@ -183,7 +186,8 @@ impl Boxes<'_> {
     pub(crate) fn fit(&self, model: &RobotModel, thing: &Thing, found: &OnTable) -> bool {
         let state = State { scale: found.scale, ..State::at(found.xy_m) };
         let Some(extents) = self.extents(model, thing, &state, 0.0) else { return false };
-        let mut fit = (found.scale - 1.0).abs() < OTHER_SCALE;
+        let mut is_whole = true;
+        let mut unlikely = 0.0;
         for eye in Eye::BOTH {
             let (Some(seen_px), Some((low, high))) = (self.boxes_px[eye.index()], extents[eye.index()])
             else {
@@ -192,12 +196,12 @@ impl Boxes<'_> {
             let (width_px, height_px) = model.rig().eyes.cameras.camera(eye).size_px();
             for (k, size_px) in [width_px, height_px].into_iter().enumerate() {
                 let [from_px, to_px] = [seen_px[k], seen_px[k + 2]].map(f64::from);
-                let (is, should) = (to_px - from_px, high[k] - low[k]);
-                let is_whole = from_px > BORDER_PX && to_px < f64::from(size_px) - BORDER_PX;
-                fit &= is_whole && (is - should).abs() < OTHER_SIZE_PX + OTHER_SIZE * should;
+                let (is, should) = (to_px - from_px, high[k] - low[k] + 2.0 * found.margin_px);
+                is_whole &= from_px > BORDER_PX && to_px < f64::from(size_px) - BORDER_PX;
+                unlikely += (is - should).powi(2) / (SIZE_SIGMA_PX.powi(2) + (SHAPE_SIGMA * should).powi(2));
             }
         }
-        fit
+        is_whole && unlikely < MOST_UNLIKELY && (found.scale - 1.0).abs() < OTHER_SCALE
     }
 
     /// Middles of the boxes and their sizes less those of the outlines of a thing that stands there.

@@ -99,6 +99,20 @@ fn what_hangs_in_the_air_and_what_stands_on_a_table_that_nobody_measured_stays_w
     // Half hidden in both eyes, and cut off by the border of one image.
     let half = boxes_px.map(|area| area.map(|[x0, y0, x1, y1]| [x0, y0, x1, y0 + 0.4 * (y1 - y0)]));
     assert_eq!(at(&measured, &Boxes { boxes_px: &half, ..boxes }, standing_m), None);
+    // A third of it and more from any side: it is not taken for a smaller one that stands elsewhere.
+    for share in [0.3, 0.45] {
+        for side in 0..4 {
+            let hidden = boxes_px.map(|area| {
+                area.map(|mut edges| {
+                    let part = share * (edges[side % 2 + 2] - edges[side % 2]);
+                    edges[side] += if side < 2 { part } else { -part };
+                    edges
+                })
+            });
+            let found = at(&measured, &Boxes { boxes_px: &hidden, ..boxes }, standing_m);
+            assert_eq!(found, None, "{share} hidden from side {side}");
+        }
+    }
     let cut = [boxes_px[0].map(|[_, y0, x1, y1]| [0.0, y0, x1, y1]), boxes_px[1]];
     assert_eq!(at(&measured, &Boxes { boxes_px: &cut, ..boxes }, standing_m), None);
     let nowhere = Boxes { boxes_px: &[None, None], ..boxes };
