@@ -1,5 +1,8 @@
 //! The order of a list: it stays while the pointer is over the list, so that no line jumps away from under it.
 
+use std::collections::HashSet;
+use std::hash::Hash;
+
 use egui::{Id, Rect, Ui};
 
 /// What is kept of a list from frame to frame.
@@ -14,7 +17,7 @@ struct Kept<K> {
 /// for another order (`asked`: another choice of it than in the frame before) has it at once.
 pub fn in_order<K, A>(ui: &Ui, list: Id, wanted: Vec<K>, asked: A) -> Vec<K>
 where
-    K: Clone + PartialEq + Send + Sync + 'static,
+    K: Clone + Eq + Hash + Send + Sync + 'static,
     A: Clone + PartialEq + Send + Sync + 'static,
 {
     let before: Option<A> = ui.data(|data| data.get_temp(list));
@@ -38,9 +41,10 @@ fn is_over(ui: &Ui, area: Rect) -> bool {
 }
 
 /// Those that were shown in their order, then those that are new in theirs.
-fn held_order<K: Clone + PartialEq>(shown: &[K], wanted: &[K]) -> Vec<K> {
-    let still = shown.iter().filter(|key| wanted.contains(key));
-    let new = wanted.iter().filter(|key| !shown.contains(key));
+fn held_order<K: Clone + Eq + Hash>(shown: &[K], wanted: &[K]) -> Vec<K> {
+    let (were, are): (HashSet<&K>, HashSet<&K>) = (shown.iter().collect(), wanted.iter().collect());
+    let still = shown.iter().filter(|key| are.contains(key));
+    let new = wanted.iter().filter(|key| !were.contains(key));
     still.chain(new).cloned().collect()
 }
 

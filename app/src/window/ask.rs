@@ -78,9 +78,9 @@ impl Ask {
         Self::NewLabelSet { folder: String::new(), classes }
     }
 
-    /// Asks where the recording of a session is written to.
-    pub fn export_lerobot(session: PathBuf) -> Self {
-        Self::ExportLerobot(LerobotAsk::of(session))
+    /// Asks where a recording is written to.
+    pub fn export_lerobot(file: PathBuf) -> Self {
+        Self::ExportLerobot(LerobotAsk::of(file))
     }
 
     /// Draws the sheet.

@@ -1,6 +1,6 @@
 //! The sheet that asks where a recording is written as a LeRobot data set, and what was being done in it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use egui::{TextEdit, Ui};
 use plumbline_engine::RecordingCommand;
@@ -15,23 +15,24 @@ const TASK: &str = "Recorded with Plumbline.";
 /// What is being typed.
 #[derive(Clone, Debug)]
 pub struct LerobotAsk {
-    session: PathBuf,
+    file: PathBuf,
     folder: String,
     task: String,
 }
 
 impl LerobotAsk {
-    /// Of the recording of a session, into a folder in it.
-    pub fn of(session: PathBuf) -> Self {
-        let folder = session.join("lerobot").display().to_string();
-        Self { session, folder, task: TASK.to_owned() }
+    /// Of a recording, into a folder of its session.
+    pub fn of(file: PathBuf) -> Self {
+        let folder = file.with_file_name("lerobot").display().to_string();
+        Self { file, folder, task: TASK.to_owned() }
     }
 
     /// Draws the sheet.
     pub fn show(&mut self, ui: &mut Ui) -> Asked {
         let about = format!(
-            "{}: one episode with both eyes, the angles of all joints, intrinsics and extrinsics (version 3 of the layout).",
-            self.session.file_name().unwrap_or_default().to_string_lossy()
+            "{} of {}: one episode with both eyes, the angles of all joints, intrinsics and extrinsics (version 3 of the layout).",
+            self.file.file_name().unwrap_or_default().to_string_lossy(),
+            self.file.parent().and_then(Path::file_name).unwrap_or_default().to_string_lossy()
         );
         title(ui, "Export as LeRobot data set", &about);
         for (name, text) in [
@@ -45,9 +46,9 @@ impl LerobotAsk {
         match buttons(ui, "Write the data set", !folder.is_empty() && !task.is_empty()) {
             Some(false) => Asked::Closed,
             Some(true) => {
-                let (session, folder) = (self.session.clone(), expand_home(folder));
+                let (file, folder) = (self.file.clone(), expand_home(folder));
                 let task = task.to_owned();
-                Asked::Command(RecordingCommand::ExportLerobot { session, folder, task }.into())
+                Asked::Command(RecordingCommand::ExportLerobot { file, folder, task }.into())
             }
             None => Asked::Open,
         }

@@ -53,7 +53,7 @@ fn a_recording_that_is_open_is_exported_as_a_data_set() {
     fake.take_sent();
     click(&mut window, "Write the data set");
     let wanted = RecordingCommand::ExportLerobot {
-        session: "sessions/grasped".into(),
+        file: "sessions/grasped/log.mcap".into(),
         folder: "sessions/grasped/lerobot".into(),
         task: "Recorded with Plumbline.".to_owned(),
     };

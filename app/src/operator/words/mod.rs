@@ -50,13 +50,13 @@ pub fn source_name(spec: &SourceSpec) -> String {
     }
 }
 
-/// The session whose recording is exported: the one that is open, else the one that was made last.
+/// The recording that is exported: the one that is open, else the one that was made last.
 pub fn recording_to_export(view: &View) -> Option<PathBuf> {
     let open = match &view.source.spec {
-        Some(SourceSpec::Recording { file, .. }) => file.parent().map(Path::to_owned),
+        Some(SourceSpec::Recording { file, .. }) => Some(file.clone()),
         _ => None,
     };
-    open.or_else(|| view.recording.last.as_ref().map(|last| last.session.clone()))
+    open.or_else(|| view.recording.last.as_ref().map(|last| last.file()))
 }
 
 /// "14:02", or the day before it when that is not today.

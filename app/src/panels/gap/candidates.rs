@@ -1,5 +1,7 @@
 //! What the data say about every candidate, named or not.
 
+use std::collections::HashMap;
+
 use egui::{ScrollArea, Ui};
 use plumbline_widgets::buttons::choice;
 use plumbline_widgets::empty::{EmptyState, Message};
@@ -41,10 +43,10 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         let list = ui.scope_id().with("candidates");
         let names = candidates.iter().map(|candidate| (candidate.id.clone(), candidate.site.clone()));
         let order = steady::in_order(ui, list, names.collect(), cx.state.gap.sort);
-        let place = |candidate: &Candidate| {
-            order.iter().position(|(id, site)| *id == candidate.id && *site == candidate.site)
-        };
-        candidates.sort_by_key(|candidate| place(candidate));
+        let places: HashMap<_, _> = order.iter().enumerate().map(|(place, name)| (name, place)).collect();
+        candidates.sort_by_cached_key(|candidate| {
+            places.get(&(candidate.id.clone(), candidate.site.clone())).copied()
+        });
         ui.add_space(space::XS);
         let area = table(ui, &candidates, &shown.finding.candidates);
         steady::keep(ui, list, order, area);

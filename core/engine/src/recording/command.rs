@@ -14,8 +14,8 @@ pub enum RecordingCommand {
     Stop,
     /// Writes a recording as a LeRobot data set.
     ExportLerobot {
-        /// The session with the recording.
-        session: PathBuf,
+        /// The recording, in its session.
+        file: PathBuf,
         /// Where to: a folder that is empty or new.
         folder: PathBuf,
         /// What was being done, a sentence.

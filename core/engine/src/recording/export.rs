@@ -1,23 +1,22 @@
 //! A recording as a LeRobot data set, as `plumbline lerobot` writes it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use plumbline_lerobot::{ExportError, Options, export};
 use plumbline_model::JobContext;
-use plumbline_recording::FILE;
 use plumbline_vision::calibration_file;
 
 use crate::ground::jobs::JobError;
 use crate::ground::text::sentence;
 
 /// The calibration that lies beside a recording.
-const BESIDE: &str = "rig-cameras.yaml";
+pub(super) const BESIDE: &str = "rig-cameras.yaml";
 
 /// Which recording, and where to.
 #[derive(Clone, Debug)]
 pub struct ExportLerobot {
-    /// The session.
-    pub session: PathBuf,
+    /// The recording, in its session.
+    pub file: PathBuf,
     /// A folder that is empty or new.
     pub folder: PathBuf,
     /// What was being done, a sentence.
@@ -25,9 +24,14 @@ pub struct ExportLerobot {
 }
 
 impl ExportLerobot {
+    /// The session that it lies in.
+    pub fn session(&self) -> &Path {
+        self.file.parent().unwrap_or(Path::new(""))
+    }
+
     /// What was written, in sentences. Where nothing comes of it, nothing of it stays.
     pub fn run(&self, context: &dyn JobContext) -> Result<String, JobError> {
-        let beside = self.session.join(BESIDE);
+        let beside = self.session().join(BESIDE);
         let calibration = if beside.is_file() {
             Some(calibration_file::load(&[beside]).map_err(JobError::told)?)
         } else {
@@ -35,12 +39,10 @@ impl ExportLerobot {
         };
         let cameras = calibration.as_ref().map(|calibration| &calibration.cameras);
         let options = Options { task: &self.task, cameras };
-        let exported = export(&self.session.join(FILE), &self.folder, &options, context).map_err(
-            |error| match error {
-                ExportError::Cancelled(cancelled) => cancelled.into(),
-                other => JobError::Failed(sentence(&other.to_string())),
-            },
-        )?;
+        let exported = export(&self.file, &self.folder, &options, context).map_err(|error| match error {
+            ExportError::Cancelled(cancelled) => cancelled.into(),
+            other => JobError::Failed(sentence(&other.to_string())),
+        })?;
         let written = format!("The recording was written as a data set to {}:", self.folder.display());
         let said = std::iter::once(written).chain(exported.said());
         Ok(said.collect::<Vec<_>>().join(" "))

@@ -210,7 +210,7 @@ fn a_recording_is_written_as_a_data_set_and_what_came_of_it_is_said() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut desk = Desk::new(folder.path(), true);
     let export = |session: &Path, to: &Path| RecordingCommand::ExportLerobot {
-        session: session.to_owned(),
+        file: session.join(plumbline_recording::FILE),
         folder: to.to_owned(),
         task: "Grasp the tomato.".to_owned(),
     };
@@ -245,7 +245,7 @@ fn a_recording_is_written_as_a_data_set_and_what_came_of_it_is_said() {
     assert!(set.join("meta/cameras.json").is_file(), "the calibration lies beside the recording");
     assert!(desk.view().exporting.is_none());
     let work = RecordingWork::Export(super::export::ExportLerobot {
-        session,
+        file: session.join(plumbline_recording::FILE),
         folder: folder.path().join("another"),
         task: "Grasp the tomato.".to_owned(),
     });

@@ -65,3 +65,10 @@ pub struct Recorded {
     /// How much.
     pub so_far: RecordedSoFar,
 }
+
+impl Recorded {
+    /// The recording itself.
+    pub fn file(&self) -> PathBuf {
+        self.session.join(plumbline_recording::FILE)
+    }
+}

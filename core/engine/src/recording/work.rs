@@ -10,7 +10,7 @@ use plumbline_model::session::{Manifest, names};
 use plumbline_model::{JobContext, StereoCalibration, StereoCameras, counted};
 use plumbline_recording::{About, Attached, FILE, RecordingWriter};
 
-use super::export::ExportLerobot;
+use super::export::{BESIDE, ExportLerobot};
 use super::recorder::{Recorder, Written};
 use crate::ground::jobs::JobError;
 use crate::ground::sessions::free_folder;
@@ -104,10 +104,10 @@ fn attached(session: &Path, rig: &str, cameras: Option<&StereoCameras>) -> Resul
         attached.push(file("robot.urdf", "application/xml", description.into()));
     }
     if let Some(cameras) = cameras {
-        let beside = session.join("rig-cameras.yaml");
+        let beside = session.join(BESIDE);
         native::write(&StereoCalibration::bare(*cameras), &beside).map_err(JobError::failed)?;
         let bytes = files::read(&beside, Size::SHORT).map_err(JobError::failed)?;
-        attached.push(file("rig-cameras.yaml", "application/yaml", bytes));
+        attached.push(file(BESIDE, "application/yaml", bytes));
     }
     Ok(attached)
 }

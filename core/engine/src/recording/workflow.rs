@@ -250,7 +250,7 @@ impl RecordingWorkflow {
             Phase::Ends(_, recorded) => Some(recorded.session.as_path()),
             Phase::Off | Phase::Begins(_) => None,
         };
-        if of_now == Some(&export.session) {
+        if of_now == Some(export.session()) {
             return context.refuse("This recording is still being written: stop it first, then export it.");
         }
         self.exporting = Some(context.start(RecordingWork::Export(export)));
@@ -336,8 +336,8 @@ impl Workflow for RecordingWorkflow {
         match command {
             RecordingCommand::Start => self.start(around, context),
             RecordingCommand::Stop => self.stop(context),
-            RecordingCommand::ExportLerobot { session, folder, task } => {
-                self.export(ExportLerobot { session, folder, task }, context);
+            RecordingCommand::ExportLerobot { file, folder, task } => {
+                self.export(ExportLerobot { file, folder, task }, context);
             }
         }
     }

@@ -1,5 +1,7 @@
 //! All points, the one that the others miss by most first.
 
+use std::collections::HashMap;
+
 use egui::{Align2, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
 use plumbline_widgets::steady;
 use plumbline_widgets::theme::{self, Role};
@@ -23,8 +25,8 @@ pub(super) fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, rows: &[PointRow]) {
     sorted.sort_by(|a, b| magnitude(b).total_cmp(&magnitude(a)));
     let list = ui.scope_id().with(("worst first", cx.state.models.tables.table));
     let order = steady::in_order(ui, list, sorted.iter().map(|row| row.index).collect(), ());
-    let sorted: Vec<&PointRow> =
-        order.iter().filter_map(|index| rows.iter().find(|row| row.index == *index)).collect();
+    let by_index: HashMap<_, _> = rows.iter().map(|row| (row.index, row)).collect();
+    let sorted: Vec<&PointRow> = order.iter().filter_map(|index| by_index.get(index).copied()).collect();
     let area =
         ScrollArea::vertical().id_salt("points by error").max_height(HEIGHT).auto_shrink([false, true]);
     let shown = area.show_rows(ui, ROW_HEIGHT, sorted.len(), |ui, visible| {
