@@ -86,8 +86,7 @@ impl Running<'_> {
             )));
         }
         if self.order.method == Method::M5
-            && let Some(found) = boxes.on_table(&knowledge.model, thing, point.xy())
-            && boxes.fit(&knowledge.model, thing, &found)
+            && let Some(found) = boxes.whole_on_table(&knowledge.model, thing, point.xy())
         {
             let support_m = knowledge.support_m(found.xy_m.x, found.xy_m.y);
             scale = found.scale;

@@ -131,6 +131,11 @@ impl Boxes<'_> {
         None
     }
 
+    /// The same, but `None` where the boxes do not fit what was found: they are of another thing, or of a part of it.
+    pub fn whole_on_table(&self, model: &RobotModel, thing: &Thing, near_m: Vector2<f64>) -> Option<OnTable> {
+        self.on_table(model, thing, near_m).filter(|found| self.fit(model, thing, found))
+    }
+
     fn found(
         &self,
         model: &RobotModel,
@@ -183,7 +188,7 @@ impl Boxes<'_> {
 
     /// Whether the boxes are as large as the outline of the thing standing there, and none of them ends at the border
     /// of its image: the middle of what is cut off or hidden in part is not that of the thing.
-    pub(crate) fn fit(&self, model: &RobotModel, thing: &Thing, found: &OnTable) -> bool {
+    fn fit(&self, model: &RobotModel, thing: &Thing, found: &OnTable) -> bool {
         let state = State { scale: found.scale, ..State::at(found.xy_m) };
         let Some(extents) = self.extents(model, thing, &state, 0.0) else { return false };
         let mut is_whole = true;

@@ -58,9 +58,9 @@ pub fn place(
     if over_table_m(model, thing, &seen_m, &(seen.covariance_m2 - seen.by_mount_m2)).is_some() {
         return None;
     }
-    let found = boxes.on_table(model, thing, seen_m.xy())?;
+    let found = boxes.whole_on_table(model, thing, seen_m.xy())?;
     let apart_m = (found.xy_m - seen_m.xy()).norm();
-    if !boxes.fit(model, thing, &found) || apart_m > APART_M + 3.0 * flat_sigma_m(&seen.covariance_m2) {
+    if apart_m > APART_M + 3.0 * flat_sigma_m(&seen.covariance_m2) {
         return None;
     }
     let [x, y] = found.xy_m.into();
