@@ -73,6 +73,11 @@ pub fn export(
         return Err(ExportError::NotEmpty(folder.to_owned()));
     }
     let was_there = folder.is_dir();
+    files::make_folder(folder)?;
+    // Whoever exports to it at the same time may have been faster: what that one writes is not touched.
+    if !files::make_new_folder(&folder.join("meta"))? {
+        return Err(ExportError::NotEmpty(folder.to_owned()));
+    }
     let exported = write(recording, folder, options, context);
     if exported.is_err() {
         take_back(folder, was_there);
@@ -154,7 +159,6 @@ fn carried(folder: &Path) -> Option<StereoCameras> {
 /// Files of the recording, beside what says of the set.
 fn keep_attached(recording: &Recording, folder: &Path) -> Result<(), ExportError> {
     let meta = folder.join("meta");
-    files::make_folder(&meta)?;
     for attached in recording.attached() {
         // Names come from a file that anybody may have written.
         let Some(name) = Path::new(&attached.name).file_name() else { continue };

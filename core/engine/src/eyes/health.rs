@@ -81,6 +81,9 @@ impl EyesWorkflow {
     pub fn saw(&mut self, frame: &StereoFrame, around: &EyesAround, context: &mut Context<'_>) {
         self.source_changed(around, context);
         self.time_passes(around, context);
+        if let Some(judged) = &mut self.health.judged {
+            judged.keep_moved(around);
+        }
         if self.may_give_way() && around.arm_moves {
             return self.give_way(context);
         }
@@ -211,7 +214,8 @@ impl EyesWorkflow {
         self.rest(busy, context.time.instant);
         if let HealthState::Judged(health) = &state {
             let at = context.time.day;
-            self.health.judged = Some(Judged { of: of.clone(), health: health.clone(), at, then });
+            self.health.judged =
+                Some(Judged { of: of.clone(), health: health.clone(), at, then, moved: None });
             let is_told = self.tell_of_health((&of, health), ask, around, context);
             // What cold eyes see says nothing of a calibration that was made warm.
             let says_something =

@@ -80,6 +80,19 @@ pub(super) struct Judged {
     pub health: Arc<EyesHealth>,
     pub at: Timestamp,
     pub then: Then,
+    /// What came of it; `None`: no pair has come since.
+    pub moved: Option<Moved>,
+}
+
+/// How far places have moved near, in the middle and far, m, since something was judged.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Moved {
+    /// Which opening of the eyes the newest pair is of, counted.
+    opened: u64,
+    /// While they were open before that, at its end.
+    before_m: Option<[f64; 3]>,
+    /// Since, by that pair.
+    told_m: Option<[f64; 3]>,
 }
 
 /// What was judged and is told to who keeps it.
@@ -96,12 +109,49 @@ pub struct ToldHealth {
 impl Judged {
     /// When that was, and what has come since.
     pub fn when(&self, around: &EyesAround) -> JudgedWhen {
+        let moved_m = self.moved_m(around);
+        JudgedWhen { at: self.at, eyes_on_min: self.then.eyes_on_min, moved_m }
+    }
+
+    /// A pair has come.
+    pub fn keep_moved(&mut self, around: &EyesAround) {
+        let opened = around.source.opened;
+        if self.of.source == around.source.spec && is_live(&around.source) {
+            let (before_m, told_m) = (self.before_m(opened), self.told_m(around));
+            self.moved = Some(Moved { opened, before_m, told_m });
+        }
+    }
+
+    /// How far places have moved since. What watching drift tells begins anew with each opening, but eyes that are closed
+    /// and opened again sit as they sat.
+    fn moved_m(&self, around: &EyesAround) -> Option<[f64; 3]> {
+        let source = &around.source;
+        let is_of_these = source.spec.is_none() || is_live(source);
+        let before_m = is_of_these.then(|| self.before_m(source.opened)).flatten();
+        farther(self.told_m(around), before_m)
+    }
+
+    /// How far they had moved when the eyes were opened as they are now; `None`: nothing told.
+    fn before_m(&self, opened: u64) -> Option<[f64; 3]> {
+        let moved = self.moved?;
+        if moved.opened == opened { moved.before_m } else { farther(moved.told_m, moved.before_m) }
+    }
+
+    /// The same, as watching drift tells it of the source that is open.
+    fn told_m(&self, around: &EyesAround) -> Option<[f64; 3]> {
         let drifted = around.drifted.as_ref().filter(|_| self.of.source == around.source.spec);
         let then = self.then.drifted.as_ref();
         // A recording that is watched again begins before what was judged of it.
         let goes_on =
             |now: &&Drifted| is_live(&around.source) || then.is_some_and(|then| then.watch == now.watch);
-        let moved_m = drifted.filter(goes_on).and_then(|now| now.since(then));
-        JudgedWhen { at: self.at, eyes_on_min: self.then.eyes_on_min, moved_m }
+        drifted.filter(goes_on).and_then(|now| now.since(then))
+    }
+}
+
+/// The farther of both.
+fn farther(a: Option<[f64; 3]>, b: Option<[f64; 3]>) -> Option<[f64; 3]> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some([0, 1, 2].map(|row| a[row].max(b[row]))),
+        (a, b) => a.or(b),
     }
 }

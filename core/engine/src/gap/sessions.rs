@@ -90,20 +90,24 @@ fn are_all(now: &[TableStamp], then: &[TableStamp], is: fn(&TableStamp, &TableSt
 }
 
 /// The session where it is now: a lab that was moved or copied brings its sessions along. Those in its own folder
-/// `sessions` are meant where the noted folder is gone, or holds the very same; one of the same name in another lab
-/// is another session.
+/// `sessions` are meant where they hold what was noted, or the noted folder is gone or holds the very same; any other
+/// one of the same name is another session.
 pub fn at_home(session: KeptSession, sessions: &Path) -> KeptSession {
     let Some(home) = session.folder.file_name().map(|name| sessions.join(name)) else { return session };
     if home == session.folder || !home.is_dir() {
         return session;
     }
     let now = stamps(&home);
-    if session.folder.is_dir() {
-        let is_the_same = is_same_folder(&home, &session.folder)
-            || are_all(&now, &stamps(&session.folder), |own, others| own.holds(others) == Some(true));
-        if !is_the_same {
-            return session;
-        }
+    let are_the_same = |others: &[TableStamp]| {
+        !now.is_empty() && are_all(&now, others, |own, others| own.holds(others) == Some(true))
+    };
+    // In the lab that was copied from, measuring may have gone on.
+    let is_it = are_the_same(&session.tables)
+        || !session.folder.is_dir()
+        || is_same_folder(&home, &session.folder)
+        || are_the_same(&stamps(&session.folder));
+    if !is_it {
+        return session;
     }
     let is_copy = are_all(&now, &session.tables, TableStamp::may_be_copy_of);
     KeptSession { folder: home, tables: if is_copy { now } else { session.tables } }

@@ -151,6 +151,18 @@ fn a_lab_that_was_moved_or_copied_finds_its_own_sessions() {
     assert_eq!(Lab::on(copied).view().shown.clone().expect("found").folders, [session]);
 }
 
+#[test]
+fn a_copied_lab_keeps_to_its_own_session_when_measuring_goes_on_in_the_first_one() {
+    let lab = Lab::new().with_finding();
+    let copied = copy_of(&lab);
+    let session = Lab::session_in(copied.path());
+    change_a_digit(&Lab::session_in(lab.folder.path()));
+    let mut there = Lab::on(copied);
+    let view = there.view();
+    assert_eq!(view.shown.clone().expect("it was found").folders, [session]);
+    assert_eq!(view.step, StepState::Done, "what was compared is here as it was");
+}
+
 /// One digit of a table is another one: it is as long as it was.
 fn change_a_digit(session: &std::path::Path) {
     let file = session.join("touches.csv");

@@ -156,6 +156,30 @@ fn of_a_set_that_was_cancelled_nothing_stays_and_it_can_be_written_there_again()
 }
 
 #[test]
+fn of_several_exports_to_one_folder_at_once_one_makes_a_whole_set() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (log, set) = (folder.path().join("log.mcap"), folder.path().join("set"));
+    recorded(&log);
+    let options = Options { task: "x", cameras: None };
+    let together = std::sync::Barrier::new(4);
+    let exported = std::thread::scope(|scope| {
+        let start = || {
+            scope.spawn(|| {
+                together.wait();
+                export(&log, &set, &options, &Unattended)
+            })
+        };
+        let all = [start(), start(), start(), start()];
+        all.map(|one| one.join().expect("ended"))
+    });
+    let refused = exported.iter().filter(|one| matches!(one, Err(ExportError::NotEmpty(_)))).count();
+    assert_eq!((exported.iter().flatten().count(), refused), (1, 3), "{exported:?}");
+    for file in ["meta/info.json", "meta/stats.json", "data/chunk-000/file-000.parquet"] {
+        assert!(set.join(file).is_file(), "{file}");
+    }
+}
+
+#[test]
 fn a_recording_that_does_not_say_where_the_eyes_were_or_what_was_told_makes_a_set_without_it() {
     let folder = tempfile::tempdir().expect("a folder");
     let (log, set) = (folder.path().join("log.mcap"), folder.path().join("set"));

@@ -33,4 +33,4 @@ pub use presence::{is_hidden, present};
 pub use read::{check, open, read, read_text};
 pub use shown::{MOST_SHOWN, MOST_TOLD, shortened, told};
 pub use size::{MOST_ROWS, Size};
-pub use write::{Replacement, make_folder, write, write_with};
+pub use write::{Replacement, make_folder, make_new_folder, write, write_with};

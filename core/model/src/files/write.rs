@@ -45,6 +45,17 @@ pub fn make_folder(folder: &Path) -> Result<(), FileError> {
     fs::create_dir_all(folder).map_err(FileError::unwritable(folder))
 }
 
+/// Makes a folder where its parent exists already; `false`: it was there. Of several that ask at once, one is told `true`.
+///
+/// # Errors
+/// [`FileError::Unwritable`].
+pub fn make_new_folder(folder: &Path) -> Result<bool, FileError> {
+    match fs::create_dir(folder) {
+        Err(why) if why.kind() == ErrorKind::AlreadyExists => Ok(false),
+        made => made.map(|()| true).map_err(FileError::unwritable(folder)),
+    }
+}
+
 /// A file written under a temporary name beside its place, and moved there when all is well.
 ///
 /// Dropped without [`Self::commit`], it is removed and the place is as it was.

@@ -7,7 +7,7 @@ use plumbline_effects::RobotModel;
 use plumbline_hardware::SourceSpec;
 use plumbline_model::robot::default_rig;
 
-use super::{Desk, held_still, seen};
+use super::{Desk, dark, held_still, seen};
 use crate::eyes::command::EyesCommand;
 use crate::eyes::view::{DriftTold, Drifted, HealthState};
 use crate::source::view::{ReplayView, SourceView};
@@ -92,6 +92,32 @@ fn what_a_recording_shows_is_not_told_of_the_eyes_and_what_moved_there_has_not_m
     desk.source(|source| *source = SourceView { opened: 3, ..(*live).clone() });
     assert!(!is_told(&mut desk), "these were judged before the recording");
     assert_eq!(desk.view().health.state, HealthState::NotAsked);
+}
+
+#[test]
+fn that_places_have_moved_is_not_forgotten_when_the_eyes_are_closed_and_opened_again() {
+    let mut desk = Desk::new(0.0);
+    let model = model();
+    desk.around.drifted = drifted(1, &model, 0.0);
+    desk.health();
+    let moved_m = |desk: &mut Desk| desk.view().health.when.expect("it was judged").moved_too_far_m();
+    desk.around.drifted = drifted(1, &model, 0.05);
+    desk.see(dark());
+    let live = desk.around.source.clone();
+    desk.around.drifted = None;
+    desk.source(|source| *source = SourceView { opened: 2, spec: None, ..(*live).clone() });
+    assert_eq!(moved_m(&mut desk), Some(0.05), "they were closed");
+    // Opened again, nothing is watched yet, and then from the start.
+    desk.source(|source| *source = SourceView { opened: 3, ..(*live).clone() });
+    assert_eq!(moved_m(&mut desk), Some(0.05), "nothing is watched");
+    for (far_m, moved) in [(0.004, 0.05), (0.06, 0.06), (0.001, 0.05)] {
+        desk.around.drifted = drifted(2, &model, far_m);
+        desk.see(dark());
+        assert_eq!(moved_m(&mut desk), Some(moved));
+    }
+    // Judged anew, nothing has moved since.
+    desk.health();
+    assert_eq!(moved_m(&mut desk), None);
 }
 
 #[test]
