@@ -73,5 +73,5 @@ pub use table_map::{
 };
 pub use texture::{Picture, Sampling, TextureCache};
 pub use theme::Role;
-pub use theme::{class_color, class_swatch};
+pub use theme::{class_color, class_swatch, class_words};
 pub use touch_pattern::{PatternArea, TouchMark, TouchMarkState, TouchPattern, TouchPatternResponse};

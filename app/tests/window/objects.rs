@@ -97,7 +97,7 @@ fn listed(window: &Harness<'_, PlumblineWindow>) -> Vec<String> {
     let rows = window.query_all_by_role(egui::accesskit::Role::ListBoxOption);
     let mut named: Vec<_> = rows
         .map(|row| (row.rect().top(), row.accesskit_node().label().unwrap_or_default()))
-        .filter(|(_, label)| ["Banana", "RightHand", "Tomato"].iter().any(|name| label.starts_with(name)))
+        .filter(|(_, label)| ["Banana", "Right hand", "Tomato"].iter().any(|name| label.starts_with(name)))
         .collect();
     named.sort_by(|a, b| a.0.total_cmp(&b.0));
     named.into_iter().map(|(_, label)| label).collect()
@@ -114,7 +114,7 @@ fn lines_stay_where_they_are_when_another_object_becomes_the_surest() {
         names.len() == lines.len() && names.iter().zip(lines).all(|(name, line)| line.starts_with(name))
     };
     assert!(
-        begins(&["Banana", "RightHand", "Tomato, 331"], &before),
+        begins(&["Banana", "Right hand", "Tomato, 331"], &before),
         "by class, not by confidence: {before:?}"
     );
     // Another tomato comes, surer and farther left; the first one moves a little.
@@ -123,7 +123,7 @@ fn lines_stay_where_they_are_when_another_object_becomes_the_surest() {
     fake.show(pair(vec![newcomer, banana(), hand(), seen_at(tomato(), 104.0, 0.5)]));
     window.run_steps(3);
     let after = listed(&window);
-    let wanted = ["Banana", "RightHand", "Tomato, 331", "Tomato, only the left eye"];
+    let wanted = ["Banana", "Right hand", "Tomato, 331", "Tomato, only the left eye"];
     assert!(begins(&wanted, &after), "the first tomato keeps its line: {after:?}");
 }
 
@@ -132,7 +132,7 @@ fn a_leak_is_told_in_a_sentence() {
     let fake = Fake::over(live(detect()));
     let mut window = fake.window_of_size(settings(), TALL);
     assert!(!says(&window, "240 mm behind it"));
-    click(&mut window, "RightHand, 331, −118, 82 ± 4 mm");
+    click(&mut window, "Right hand, 331, −118, 82 ± 4 mm");
     assert!(says(&window, "240 mm behind it"));
 }
 
@@ -270,7 +270,7 @@ fn pictures_of_objects() {
             let settings = WindowSettings { theme, ..settings() };
             let mut window = fake.window_with(settings, [1440.0, 1100.0], true);
             if choose {
-                click(&mut window, "RightHand, 331, −118, 82 ± 4 mm");
+                click(&mut window, "Right hand, 331, −118, 82 ± 4 mm");
             }
             window.run_steps(3);
             let image = window.render().expect("the test renderer draws");

@@ -30,6 +30,16 @@ pub fn class_color(name: &str, number: usize) -> Color32 {
     published.map_or_else(|| COLORS[PUBLISHED_CLASSES.len() + number % others], |class| COLORS[class])
 }
 
+/// A class in words for people. Only those of the published names that are none are told otherwise: any other name is
+/// the one that whoever trained the detector gave it.
+pub fn class_words(name: &str) -> &str {
+    match name {
+        "LeftHand" => "Left hand",
+        "RightHand" => "Right hand",
+        name => name,
+    }
+}
+
 /// A patch of a class's color, edged so that a light color is seen on a light ground.
 pub fn class_swatch(painter: &Painter, rect: Rect, color: Color32, edge: Color32) {
     painter.rect(rect, 2.0, color, Stroke::new(1.0, edge), StrokeKind::Inside);
@@ -38,6 +48,14 @@ pub fn class_swatch(painter: &Painter, rect: Rect, color: Color32, edge: Color32
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn hands_are_told_in_words_and_a_name_of_somebody_else_as_it_is() {
+        for name in PUBLISHED_CLASSES {
+            assert!(!class_words(name)[1..].contains(char::is_uppercase), "{name}");
+        }
+        assert_eq!(class_words("SoftBall"), "SoftBall");
+    }
 
     #[test]
     fn a_published_class_keeps_its_color_and_differs_from_the_others() {

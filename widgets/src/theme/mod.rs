@@ -11,7 +11,7 @@ mod distinct;
 mod tokens;
 
 pub use apply::{apply, fonts};
-pub use class_color::{class_color, class_swatch};
+pub use class_color::{class_color, class_swatch, class_words};
 pub(crate) use tokens::{CROSSHAIR, INVALID, PIXEL_GRID, RIM, STALE_FADE, STALE_TINT, readable_on};
 pub use tokens::{DARK, LIGHT, ON_IMAGE, Surfaces, Tokens};
 

@@ -1,7 +1,7 @@
 //! The pane of the work: what and how, gates, lamps, result, and every step by itself.
 
 use egui::{RichText, ScrollArea, Slider, Ui};
-use plumbline_engine::view::{GateState, GraspPhase, GraspView};
+use plumbline_engine::view::{FULL_HAND, GateState, GraspPhase, GraspView};
 use plumbline_engine::{GraspCommand, HandStep, View};
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, Role, space};
@@ -103,7 +103,7 @@ fn doing(view: &View) -> String {
 }
 
 /// What keeps anything from moving; when nothing does and nothing else is shown, one word. Notes stand in
-/// the inspector.
+/// the inspector, and of what is in the hand the bottom line tells, with its button.
 fn gates(ui: &mut Ui, grasp: &GraspView) {
     if grasp.phase != GraspPhase::Idle {
         return;
@@ -112,7 +112,7 @@ fn gates(ui: &mut Ui, grasp: &GraspView) {
     if grasp.trouble().is_none() && grasp.run.is_none() {
         ui.label(RichText::new("Ready.").color(Role::Accepted.color(tokens)));
     }
-    for gate in grasp.gates.iter().filter(|gate| gate.state == GateState::Shut) {
+    for gate in grasp.gates.iter().filter(|gate| gate.state == GateState::Shut && gate.name != FULL_HAND) {
         let text = format!("{}, not ready: {}", gate.name, gate.text);
         ui.label(RichText::new(text).color(Role::Warning.color(tokens)));
     }

@@ -3,6 +3,7 @@
 use egui::{RichText, Ui};
 use plumbline_engine::View;
 use plumbline_engine::view::{ObjectPlaceView, ObjectView};
+use plumbline_widgets::class_words;
 use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::key_value::{KeyValue, big_figure, key_value_grid};
 use plumbline_widgets::theme::{self, Role, space};
@@ -31,7 +32,8 @@ pub fn show(ui: &mut Ui, view: &View, panels: &mut ObjectsPanels) {
         Ok(place) => placed(ui, object, place),
         Err(why) => {
             ui.label(
-                RichText::new(format!("{}: no place", object.name)).color(DOUBT.color(theme::tokens(ui))),
+                RichText::new(format!("{}: no place", class_words(&object.name)))
+                    .color(DOUBT.color(theme::tokens(ui))),
             );
             let why = why.to_string();
             ui.label(&why);
@@ -50,7 +52,7 @@ pub fn show(ui: &mut Ui, view: &View, panels: &mut ObjectsPanels) {
 }
 
 fn placed(ui: &mut Ui, object: &ObjectView, place: &ObjectPlaceView) {
-    let label = format!("{}, from the left eye", object.name);
+    let label = format!("{}, from the left eye", class_words(&object.name));
     big_figure(ui, &label, &format::mm_with(place.range_m, place.range_sigma_m), Role::Ink);
     ui.add_space(space::S);
     ui.label(theme::small(ui, format!("Middle, robot frame, robot {}", place.model)));

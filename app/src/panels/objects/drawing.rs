@@ -4,9 +4,9 @@ use egui::Color32;
 use plumbline_engine::View;
 use plumbline_engine::view::{ObjectView, SeenBox};
 use plumbline_model::{Eye, Pixel, PixelSpace};
-use plumbline_widgets::class_color;
 use plumbline_widgets::overlay::{Emphasis, LabeledBox, Mark, Overlay};
 use plumbline_widgets::theme::Role;
+use plumbline_widgets::{class_color, class_words};
 
 use super::state::{ObjectsPanels, objects};
 
@@ -103,7 +103,7 @@ fn labeled(
         Some(focused) if std::ptr::eq(focused, object) => Emphasis::Chosen,
         Some(_) => Emphasis::Faded,
     };
-    let mut text = format!("{} {:.2}", object.name, seen.confidence);
+    let mut text = format!("{} {:.2}", class_words(&object.name), seen.confidence);
     if object.leak.is_some() {
         text.push_str(" · leak");
     }

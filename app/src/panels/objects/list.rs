@@ -4,6 +4,7 @@ use egui::{Align2, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
 use plumbline_engine::View;
 use plumbline_engine::view::ObjectView;
 use plumbline_model::Eye;
+use plumbline_widgets::class_words;
 use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::theme::{self, space};
 
@@ -34,7 +35,7 @@ fn row(ui: &mut Ui, object: &ObjectView, panels: &mut ObjectsPanels) {
             egui::Role::ListBoxOption,
             true,
             chosen,
-            format!("{}, {}", object.name, whereabouts(object)),
+            format!("{}, {}", class_words(&object.name), whereabouts(object)),
         )
     });
     if response.hovered() {
@@ -59,7 +60,8 @@ fn row(ui: &mut Ui, object: &ObjectView, panels: &mut ObjectsPanels) {
     let text = left + SWATCH + space::S;
     let painter = ui.painter().with_clip_rect(rect);
     let doubtful = object.leak.is_some() || !object.doubts.is_empty();
-    let name = if doubtful { format!("{}  !", object.name) } else { object.name.clone() };
+    let name = class_words(&object.name);
+    let name = if doubtful { format!("{name}  !") } else { name.to_owned() };
     painter.text(pos2(text, rect.top() + 2.0), Align2::LEFT_TOP, name, body.clone(), tokens.text_strong);
     let right = rect.right() - space::XS;
     painter.text(

@@ -9,6 +9,7 @@ use plumbline_model::robot::{self as model, Description, JointIndex, JointKind, 
 use plumbline_widgets::scene3d::{
     Dot, Grid, Label3d, Line, PickId, Scene, Shape, Solid, Tint, eye_frustum, screen_slab, table_slab, triad,
 };
+use plumbline_widgets::{class_color, class_words};
 
 use super::state::RobotPanels;
 
@@ -78,8 +79,8 @@ pub fn scene(view: &View, panels: &RobotPanels, ghost: Option<&Posture>, names: 
     scene
 }
 
-/// What the detector places: an ellipsoid of two standard deviations and, where there is room, its
-/// name.
+/// What the detector places: where it can be by two standard deviations and, where there is room, its name. Rings, not a
+/// body: it is no thing, and must not hide one.
 fn objects(scene: &mut Scene, view: &View, names: bool) {
     if view.detect.stale.is_some() {
         return;
@@ -88,14 +89,16 @@ fn objects(scene: &mut Scene, view: &View, names: bool) {
     for object in objects {
         let Ok(place) = object.best_place() else { continue };
         let at_m = steadied_m(&place.point_in_robot.coords);
-        let tint = Tint::Object(plumbline_widgets::class_color(&object.name, object.class.0));
+        let tint = Tint::Object(class_color(&object.name, object.class.0));
         if let Some((radii_m, turn)) = two_sigma(&place.covariance_m2) {
             let pose = Isometry3::from_parts(Translation3::from(at_m.coords), turn);
-            scene.solids.push(Solid::new(Shape::Ellipsoid { radii_m }, pose, tint));
+            scene.lines.extend(rings(radii_m).map(|ring_m| {
+                Line::new(ring_m.into_iter().map(|p_m| pose * p_m).collect(), tint).width(1.0)
+            }));
         }
         scene.dots.push(Dot { at_m, radius: 3.5, tint });
         if names {
-            scene.labels.push(Label3d { at_m, text: object.name.clone(), tint });
+            scene.labels.push(Label3d { at_m, text: class_words(&object.name).to_owned(), tint });
         }
     }
 }
@@ -120,6 +123,20 @@ fn two_sigma(covariance_m2: &Matrix3<f64>) -> Option<([f64; 3], UnitQuaternion<f
     }
     let turn = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes));
     Some((radii_m, turn))
+}
+
+/// The three outlines of an ellipsoid around its axes, about its middle.
+fn rings([a_m, b_m, c_m]: [f64; 3]) -> [Vec<Point3<f64>>; 3] {
+    const CORNERS: usize = 48;
+    let around = |at: fn(f64, f64) -> [f64; 3]| {
+        let corner = |i: usize| {
+            let (sin, cos) = (std::f64::consts::TAU * i as f64 / CORNERS as f64).sin_cos();
+            let [x, y, z] = at(cos, sin);
+            Point3::new(a_m * x, b_m * y, c_m * z)
+        };
+        (0..=CORNERS).map(corner).collect()
+    };
+    [around(|u, v| [u, v, 0.0]), around(|u, v| [u, 0.0, v]), around(|u, v| [0.0, u, v])]
 }
 
 fn steadied(posture: &Posture) -> Posture {

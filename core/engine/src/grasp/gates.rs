@@ -6,7 +6,7 @@ use plumbline_model::robot::JointIndex;
 use super::around::GraspAround;
 use super::method::lacks;
 use super::rest::rest;
-use super::view::{Gate, GateState, InHand};
+use super::view::{FULL_HAND, Gate, GateState, InHand};
 use super::warmth::warmth;
 use crate::ground::text::sentence;
 use crate::robot::view::{Connection, RobotView};
@@ -38,7 +38,7 @@ pub fn gates(around: &GraspAround, choice: HandChoice, method: Method) -> Vec<Ga
 /// A hand that holds something would drop it to grasp something else.
 pub fn full_hand(held: &InHand) -> Gate {
     closed(
-        "Hand",
+        FULL_HAND,
         format!(
             "The {} is in the {} hand: put it down, or hand it over, first.",
             held.object.to_lowercase(),

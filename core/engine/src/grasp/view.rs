@@ -99,6 +99,9 @@ pub struct Gate {
     pub text: String,
 }
 
+/// Name of the gate that is shut while a hand holds something.
+pub const FULL_HAND: &str = "Hand";
+
 /// Whether a gate lets pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GateState {
