@@ -13,6 +13,9 @@ use crate::watch::{Watch, is_computing, is_under_way};
 /// For how long a leg is waited for: so long takes nothing that will still come.
 const PATIENCE: Duration = Duration::from_secs(1800);
 
+/// Who sees no answer to a click presses once more.
+const ANSWERED_WITHIN: Duration = Duration::from_secs(5);
+
 /// The line at the foot in which the big button stands.
 const BOTTOM_LINE_PT: f32 = 52.0;
 
@@ -96,7 +99,11 @@ impl Walk {
         println!("{:7.1} s  {label}", self.began.elapsed().as_secs_f64());
         click(&mut self.window, label);
         clicks.push(label.to_owned());
-        self.watch.look(&view(&self.window));
+        // The engine takes in what was pressed while the next frames are drawn: who presses waits for that.
+        let pressed = Instant::now();
+        while pressed.elapsed() < ANSWERED_WITHIN && self.primary().as_deref() == Some(label) {
+            self.step(label);
+        }
     }
 
     /// One frame, and what is to be seen in it.

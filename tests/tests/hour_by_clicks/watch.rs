@@ -89,10 +89,10 @@ pub fn is_under_way(view: &View) -> bool {
     let touches = matches!(view.touch.phase, TouchPhase::Planning | TouchPhase::Running { .. });
     let looks = view.mount.tour.is_some() || view.mount.step == StepState::Running;
     let shows = view.twin.board_tour.is_some();
-    moves || touches || looks || shows || is_computing(view)
+    moves || touches || looks || shows || view.running_job().is_some()
 }
 
-/// Whether something is computed in the background, by a job or by the eyes' capturing.
+/// Whether something is computed in the background.
 pub fn is_computing(view: &View) -> bool {
     view.jobs.iter().any(|job| job.state.is_running()) || view.models.training || view.gap.searching.is_some()
 }
