@@ -10,6 +10,8 @@ pub struct Leg {
     pub name: &'static str,
     /// The step at the left that leads there, for who is not led there.
     pub rail: &'static str,
+    /// Words of the button that is taken wherever it can be pressed, whatever else is recommended.
+    pub takes: Option<&'static str>,
     /// Whether the operator chooses this step, and is not led to it.
     pub is_chosen: bool,
     /// Whether it is behind.
@@ -22,19 +24,20 @@ pub const LEGS: &[Leg] = &[
     led("Mount", "Mount", |view| view.mount.in_use.is_some()),
     led("Screen", "Touch", |view| view.touch.placement.is_some()),
     led("Touches", "Touch", |view| is_touched(view, Purpose::Train)),
-    led("Models", "Models", |view| view.models.in_use.is_some()),
+    Leg { takes: Some("Use M3"), ..led("Models", "Models", |view| view.models.in_use.is_some()) },
     led("Check", "Models", |view| is_touched(view, Purpose::Check) && view.touch.figures.is_some()),
     Leg {
         name: "Find",
         rail: "Gap",
+        takes: None,
         is_chosen: true,
         is_behind: |view| view.gap.shown.is_some() && view.gap.searching.is_none(),
     },
-    led("Add", "Gap", |view| !view.gap.model.effects.is_empty()),
+    Leg { takes: Some(" to the model"), ..led("Add", "Gap", |view| !view.gap.model.effects.is_empty()) },
 ];
 
 const fn led(name: &'static str, rail: &'static str, is_behind: fn(&View) -> bool) -> Leg {
-    Leg { name, rail, is_chosen: false, is_behind }
+    Leg { name, rail, takes: None, is_chosen: false, is_behind }
 }
 
 fn is_touched(view: &View, purpose: Purpose) -> bool {

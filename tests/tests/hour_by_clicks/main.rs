@@ -11,6 +11,8 @@ mod table;
 mod walk;
 mod watch;
 
+use std::path::PathBuf;
+
 use busy::Busy;
 use legs::LEGS;
 use walk::Walk;
@@ -23,7 +25,9 @@ const MOST_MIN: f64 = 25.0;
 
 fn take_the_hour(title: &str) {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let mut walk = Walk::begin(&folder.path().join("data"));
+    // What came of it can be kept, to be looked at in the window.
+    let kept = std::env::var_os("PLUMBLINE_KEEP_LAB").map(PathBuf::from);
+    let mut walk = Walk::begin(&kept.unwrap_or_else(|| folder.path().join("data")));
     for leg in LEGS {
         walk.take(leg);
     }

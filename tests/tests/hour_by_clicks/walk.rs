@@ -10,8 +10,14 @@ use crate::legs::Leg;
 use crate::table::{LegTaken, Taken};
 use crate::watch::{Watch, is_computing, is_under_way};
 
+/// A twin with errors like those of a robot.
+const SCENARIO: &str = "lab";
+
 /// For how long a leg is waited for: so long takes nothing that will still come.
 const PATIENCE: Duration = Duration::from_secs(1800);
+
+/// So long a button has to mean the same before it is pressed: it is read first.
+const READ_FOR: Duration = Duration::from_secs(1);
 
 /// Who sees no answer to a click presses once more.
 const ANSWERED_WITHIN: Duration = Duration::from_secs(5);
@@ -30,8 +36,8 @@ pub struct Walk {
     legs: Vec<LegTaken>,
     lost: Vec<String>,
     began: Instant,
-    /// What was pressed in legs that are behind: pressed again it leads back.
-    pressed_before: Vec<String>,
+    /// The button that is being read, and since when.
+    read: Option<(String, Instant)>,
 }
 
 impl Walk {
@@ -40,12 +46,12 @@ impl Walk {
         let size = egui::vec2(1440.0, 900.0);
         Self {
             began: Instant::now(),
-            window: window_of_size(data_dir, Some("lab"), size),
+            window: window_of_size(data_dir, Some(SCENARIO), size),
             size,
             watch: Watch::default(),
             legs: vec![],
             lost: vec![],
-            pressed_before: vec![],
+            read: None,
         }
     }
 
@@ -66,20 +72,22 @@ impl Walk {
             self.step(leg.name);
             let now = view(&self.window);
             if is_under_way(&now) || (leg.is_behind)(&now) {
+                self.read = None;
                 continue;
             }
-            let Some(label) = self.primary() else { continue };
-            let leads_back = self.pressed_before.contains(&label);
-            let goes_round = clicks.iter().filter(|clicked| **clicked == label).count() > 2;
-            if leads_back || goes_round {
-                self.lost.push(format!("{}: \"{label}\" leads back", leg.name));
-                assert!(self.lost.len() < 20, "{:#?}", self.lost);
+            let Some(label) = self.taken(leg).or_else(|| self.primary()).filter(|label| self.is_read(label))
+            else {
+                continue;
+            };
+            let goes_round = clicks.iter().filter(|clicked| **clicked == label).count() > 1;
+            if goes_round {
+                self.lost.push(format!("{}: \"{label}\" again and again", leg.name));
+                assert!(self.lost.len() < 10, "{:#?}", self.lost);
                 self.click(leg.rail, &mut clicks);
             } else {
                 self.click(&label, &mut clicks);
             }
         }
-        self.pressed_before.extend(clicks.iter().cloned());
         self.legs.push(LegTaken {
             name: leg.name,
             clicks,
@@ -118,6 +126,23 @@ impl Walk {
         }
         self.watch.look(&now);
         std::thread::sleep(Duration::from_millis(10));
+    }
+
+    /// Whether a button was there long enough to be read.
+    fn is_read(&mut self, label: &str) -> bool {
+        let before = self.read.take().filter(|(read, _)| read == label);
+        let (_, since) = self.read.insert(before.unwrap_or_else(|| (label.to_owned(), Instant::now())));
+        since.elapsed() >= READ_FOR
+    }
+
+    /// The button that this leg takes wherever it is, where it can be pressed.
+    fn taken(&self, leg: &Leg) -> Option<String> {
+        let mut found = self.window.query_all_by_label_contains(leg.takes?);
+        let is_button = |node: &egui_kittest::Node<'_>| {
+            let node = node.accesskit_node();
+            node.role() == egui::accesskit::Role::Button && !node.is_disabled()
+        };
+        found.find(is_button)?.accesskit_node().label()
     }
 
     /// The big button of the bottom line, where it can be pressed.

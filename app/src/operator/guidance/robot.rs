@@ -6,6 +6,7 @@ use plumbline_engine::view::{
 use plumbline_engine::{SourceSpec, View};
 use plumbline_widgets::format;
 
+use super::onward;
 use super::sentence::{Guidance, say};
 use crate::operator::words::robot::{move_sentence, moved_name, silent_together};
 use crate::operator::{Action, MountAction, RobotAction, Screen};
@@ -139,10 +140,13 @@ pub(super) fn mount(view: &View) -> Guidance {
         return say(next_or(view, &format!("The head turns to {poses} and looks at each; the arms stay.")))
             .then(format!("Turn the head to {poses}"), Action::Mount(MountAction::Tour));
     }
-    if !mount.views.is_empty() {
+    if !mount.views.is_empty() && !mount.is_solved {
         let views = format::count(mount.views.len(), "view");
         return say(next_or(view, &format!("{views} taken. Next: solve.")))
             .then(format!("Solve {views}"), Action::Mount(MountAction::Solve));
+    }
+    if let Some(guidance) = onward::after_the_mount(view, "The mount of the eyes is in use.") {
+        return guidance;
     }
     if view.twin.running && view.twin.board.is_none() {
         return say("The board has to lie where both eyes see it; the head turns, the board stays.")
