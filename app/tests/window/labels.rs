@@ -2,6 +2,7 @@
 
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
 use plumbline::{PlumblineWindow, Screen, ThemeChoice, WindowSettings};
 use plumbline_engine::view::{LabelsView, ScoresView};
 use plumbline_engine::{BoxEdit, Command, ConfusionCell, LabelsCommand, ScoresCommand, View};
