@@ -38,12 +38,27 @@ pub fn window(data_dir: &Path, twin: Option<&str>) -> Window {
 
 /// The same over threads that the test can let fail.
 pub fn window_on_trial(data_dir: &Path, twin: Option<&str>, trial: Trial) -> Window {
+    built(data_dir, twin, trial, egui::vec2(1280.0, 800.0))
+}
+
+/// The same in another size, pt.
+pub fn window_of_size(data_dir: &Path, twin: Option<&str>, size: egui::Vec2) -> Window {
+    built(data_dir, twin, Trial::default(), size)
+}
+
+fn built(data_dir: &Path, twin: Option<&str>, trial: Trial, size: egui::Vec2) -> Window {
     let settings =
         EngineSettings { data_dir: Some(data_dir.to_owned()), source: None, twin: twin.map(str::to_owned) };
-    Harness::builder().with_size([1280.0, 800.0]).build_eframe(move |creation| {
+    Harness::builder().with_size(size).build_eframe(move |creation| {
         let engine = Engine::start_on_trial(settings, Arc::new(|| {}), trial);
         PlumblineWindow::new(&creation.egui_ctx, Box::new(engine), WindowOptions::default())
     })
+}
+
+/// Processor time that this thread has used so far; `None` where the system does not tell.
+pub fn thread_processor_time() -> Option<Duration> {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    text.split_whitespace().next()?.parse().ok().map(Duration::from_nanos)
 }
 
 /// What the window shows just now.

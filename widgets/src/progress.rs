@@ -2,7 +2,8 @@
 
 use std::time::Duration;
 
-use egui::{Align, Layout, Rect, RichText, Sense, Ui, WidgetInfo, pos2, vec2};
+use egui::text::{LayoutJob, TextWrapping};
+use egui::{Align, Layout, Rect, RichText, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
 
 use crate::format;
 use crate::theme::{self, Role, space};
@@ -78,12 +79,26 @@ impl<'a> ProgressLine<'a> {
                     action = self.controls(ui, job).or(action);
                 }
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                    let color = self.role.color(theme::tokens(ui));
-                    ui.add(egui::Label::new(RichText::new(self.sentence).color(color)).truncate());
+                    ui.add(egui::Label::new(self.fitted(ui)));
                 });
             });
         });
         action
+    }
+
+    /// The sentence on one line; in small on two where it is too long for that, and cut only then.
+    fn fitted(&self, ui: &Ui) -> LayoutJob {
+        let color = self.role.color(theme::tokens(ui));
+        let width = ui.available_width();
+        let line = |style: TextStyle| {
+            LayoutJob::simple_singleline(self.sentence.to_owned(), style.resolve(ui.style()), color)
+        };
+        let body = line(TextStyle::Body);
+        let needed = ui.painter().layout_job(body.clone()).size().x;
+        let (mut job, rows) = if needed <= width { (body, 1) } else { (line(TextStyle::Small), 2) };
+        job.wrap = TextWrapping { max_width: width, max_rows: rows, ..TextWrapping::default() };
+        job.break_on_newline = true;
+        job
     }
 
     /// From right to left: cancel, time left, bar.

@@ -184,6 +184,9 @@ fn details(model: &ModelReport) -> String {
     if let Some(names) = &model.names {
         text += &format!("  names: {names}\n");
     }
+    if let Some(own) = &model.judged_by_itself {
+        text += &format!("  {own}\n");
+    }
     text += "  class         boxes  mAP50-95            95 %   mAP50            95 %  precision  recall  best at\n";
     model.classes.iter().for_each(|class| text += &line(class));
     text + &listed("  images with trouble:", model.skipped.iter().map(|skipped| format!("  {skipped}")))

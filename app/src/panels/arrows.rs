@@ -46,6 +46,6 @@ fn entry_in(ui: &mut Ui, tokens: &theme::Tokens, role: Role, text: &str) {
         ui.painter().rect_filled(rect, 3.0, tokens.backdrop);
         let stroke = Stroke::new(2.0, role.color(tokens));
         ui.painter().hline(rect.shrink(5.0).x_range(), rect.center().y, stroke);
-        ui.label(theme::small(ui, text));
+        ui.add(egui::Label::new(theme::small(ui, text)).wrap());
     });
 }

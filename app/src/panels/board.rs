@@ -21,6 +21,9 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     });
 }
 
+/// Where a tile is narrower, numbers stand below what they are.
+const NARROW_PT: f32 = 190.0;
+
 fn board(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let eyes = &cx.view.eyes;
     let draft = match cx.state.board {
@@ -28,24 +31,37 @@ fn board(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         _ => BoardDraft::of(&eyes.board),
     };
     let mut edited = draft;
-    // The grid of numbers may be wider than a narrow tile; what is said below it is not.
-    let width = ui.available_width();
-    egui::Grid::new("board").num_columns(2).spacing([space::S, space::S]).show(ui, |ui| {
+    if ui.available_width() < NARROW_PT {
         ui.label("Squares");
-        ui.horizontal(|ui| {
-            number(ui, "Squares across", &mut edited.columns);
-            ui.label("×");
-            number(ui, "Squares down", &mut edited.rows);
-        });
-        ui.end_row();
+        squares(ui, &mut edited);
         ui.label("Side of one");
-        let side = DragValue::new(&mut edited.square_mm).range(1.0..=1000.0).speed(0.1).suffix(" mm");
-        let side = ui.add(side.max_decimals(3).min_decimals(0));
-        side.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, "Side of a square"));
-        side.on_hover_text("Measure several squares with a ruler and divide: all lengths rest on it");
-        ui.end_row();
+        side(ui, &mut edited);
+    } else {
+        egui::Grid::new("board").num_columns(2).spacing([space::S, space::S]).show(ui, |ui| {
+            ui.label("Squares");
+            squares(ui, &mut edited);
+            ui.end_row();
+            ui.label("Side of one");
+            side(ui, &mut edited);
+            ui.end_row();
+        });
+    }
+    chosen(ui, cx, draft, edited);
+}
+
+fn squares(ui: &mut Ui, edited: &mut BoardDraft) {
+    ui.horizontal(|ui| {
+        number(ui, "Squares across", &mut edited.columns);
+        ui.label("×");
+        number(ui, "Squares down", &mut edited.rows);
     });
-    ui.allocate_ui(egui::vec2(width, 0.0), |ui| chosen(ui, cx, draft, edited));
+}
+
+fn side(ui: &mut Ui, edited: &mut BoardDraft) {
+    let side = DragValue::new(&mut edited.square_mm).range(1.0..=1000.0).speed(0.1).suffix(" mm");
+    let side = ui.add(side.max_decimals(3).min_decimals(0));
+    side.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, "Side of a square"));
+    side.on_hover_text("Measure several squares with a ruler and divide: all lengths rest on it");
 }
 
 /// What comes of the numbers, and what is seen.

@@ -6,7 +6,9 @@ use std::time::Instant;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use plumbline::{PlumblineWindow, Screen, WindowSettings};
-use plumbline_engine::view::{EyesView, JobState, JobView, ReplayView, SourceStatus, SourceView};
+use plumbline_engine::view::{
+    Connection, EyesView, JobState, JobView, ReplayView, RobotView, SourceStatus, SourceView,
+};
 use plumbline_engine::{Command, EyesCommand, JobCommand, JobId, SourceCommand, View};
 
 use crate::fake::{Fake, click, says, shows};
@@ -48,6 +50,19 @@ fn an_uncalibrated_view_leads_to_the_calibration() {
     assert!(says(&window, "nothing can be measured yet"));
     click(&mut window, "Calibrate the eyes");
     assert!(shows(&window, "Use all 30 pairs of this folder"));
+}
+
+#[test]
+fn while_the_robot_is_being_connected_nobody_is_sent_for_images() {
+    let connection =
+        Connection::Connecting { to: "twin \"lab\"".to_owned(), doing: "building it".to_owned() };
+    let robot = Arc::new(RobotView { connection, ..RobotView::default() });
+    let fake = Fake::over(View { robot, ..View::default() });
+    let window = fake.window(on(Screen::Live));
+    assert!(says(&window, "Connecting to twin \"lab\": building it."));
+    let offered = window.query_all_by_label("Open a folder of pairs…").count();
+    let window = Fake::over(View::default()).window(on(Screen::Live));
+    assert_eq!(window.query_all_by_label("Open a folder of pairs…").count(), offered + 1);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
 use plumbline::{PlumblineWindow, Screen, ThemeChoice, WindowSettings};
 use plumbline_engine::view::{LabelsView, ScoresView};
 use plumbline_engine::{BoxEdit, Command, ConfusionCell, LabelsCommand, ScoresCommand, View};
@@ -9,8 +10,8 @@ use plumbline_model::ClassIndex;
 
 use crate::fake::{Fake, click, says, shows};
 use crate::made_up_labels::{
-    cell, chosen, evaluating, failed, import, judged, judging, labeling, large, not_opened, open, proposed,
-    unreadable, unsaved,
+    OWN_LABELS, cell, chosen, evaluating, failed, import, judged, judging, labeling, large, not_opened, open,
+    proposed, unreadable, unsaved,
 };
 
 fn on(screen: Screen) -> WindowSettings {
@@ -150,6 +151,9 @@ fn detectors_are_judged_by_one_button() {
 fn the_table_says_what_has_to_be_known_and_a_cell_opens_its_images() {
     let (fake, mut window) = scores(judged());
     assert!(says(&window, "yolo12s: its classes have another order; they are matched by name."));
+    // A detector that proposed the labels agrees with itself, and that stands beside its figures.
+    assert!(says(&window, &format!("yolo12s: {OWN_LABELS}")));
+    assert_eq!(window.query_all_by_label("own labels").count(), 4, "its figures, and nobody else's");
     assert!(says(&window, "does not know Onion"));
     assert!(says(&window, "is not a usable ONNX file"));
     click(&mut window, "LeftHand taken for RightHand: 4");

@@ -3,6 +3,7 @@
 
 use egui::epaint::{ClippedShape, Shape, TextShape};
 use egui::{Rect, Vec2};
+use egui_kittest::kittest::Queryable as _;
 use plumbline::{PlumblineWindow, Screen, ThemeChoice, WindowSettings};
 use plumbline_engine::View;
 use plumbline_engine::gap::{Finding, sample};
@@ -105,6 +106,39 @@ fn faults(view: &View, screen: Screen, size: [f32; 2], zoom: f32) -> Vec<String>
         faults.extend(cut(&lines));
     }
     faults.iter().map(|fault| format!("{screen:?} {size:?} {zoom}: {fault}")).collect()
+}
+
+#[test]
+fn numbers_of_the_board_stand_within_their_tile_and_a_long_sentence_on_two_lines() {
+    let fake = Fake::over(made_up::everything());
+    let settings =
+        WindowSettings { theme: ThemeChoice::Light, screen: Screen::Collect, ..WindowSettings::default() };
+    let mut window = fake.window_of_size(settings, [1024.0, 700.0]);
+    window.run_steps(4);
+    let next_tile = window.get_by_label("Coverage").rect().left();
+    for number in ["Squares across", "Squares down", "Side of a square"] {
+        let right = window.get_by_label(number).rect().right();
+        assert!(right < next_tile - SLACK, "{number} ends at {right}, the next tile begins at {next_tile}");
+    }
+    // Too long for one line of the foot, and not cut there.
+    let sentence = "The board has to lie where both eyes see it and stays there while the head turns, so lay it flat \
+                    on the table, away from the hands, and press this button when nothing moves any more.";
+    let robot = plumbline_engine::view::RobotView {
+        connection: plumbline_engine::view::Connection::Lost {
+            to: "twin".to_owned(),
+            reason: sentence.to_owned(),
+        },
+        ..made_up::connected()
+    };
+    fake.show(made_up::with_robot(robot));
+    let settings =
+        WindowSettings { theme: ThemeChoice::Light, screen: Screen::Robot, ..WindowSettings::default() };
+    let mut window = fake.window_of_size(settings, [1024.0, 700.0]);
+    window.run_steps(4);
+    let foot: Vec<_> = lines(&window).into_iter().filter(|line| line.rect.top() > 640.0).collect();
+    let said: Vec<_> = foot.iter().filter(|line| sentence.contains(line.text.trim())).collect();
+    assert_eq!(said.len(), 2, "on two lines");
+    assert!(said.iter().all(|line| !line.is_elided && line.rect.bottom() < 700.0));
 }
 
 fn assert_none(all: &[String]) {

@@ -68,6 +68,36 @@ fn one_button_leads_through_the_work() {
 }
 
 #[test]
+fn what_was_accepted_is_behind_and_the_button_leads_to_the_next_step() {
+    // Eyes without a mount: on every screen where one looks at them, the mount comes next.
+    for screen in [Screen::Live, Screen::Judge, Screen::Accept] {
+        let fake = Fake::over(ready(MountView::default()));
+        let mut window = fake.window(WindowSettings { screen, ..WindowSettings::default() });
+        assert!(says(&window, "Next: measure how the eyes sit in the head (step 2)."), "{screen:?}");
+        click(&mut window, "Go to Mount");
+        assert!(says(&window, "Plan head poses"), "{screen:?}");
+    }
+    // Its views are still there when it was accepted: they are not solved again, the screen is touched.
+    let accepted = MountView {
+        proposal: None,
+        in_use: Some(solved_mount()),
+        is_solved: true,
+        step: StepState::Done,
+        ..mount()
+    };
+    let fake = Fake::over(ready(accepted.clone()));
+    let mut window = fake.window(on_mount());
+    assert!(says(&window, "Next: touch the screen (step 3)."));
+    click(&mut window, "Go to Touch");
+    assert!(says(&window, "First measure where the screen lies"));
+    // A view more is one to solve with.
+    let more = MountView { is_solved: false, ..accepted };
+    let fake = Fake::over(ready(more));
+    let window = fake.window(on_mount());
+    assert!(says(&window, "Solve 13 views"));
+}
+
+#[test]
 fn while_the_head_tours_there_is_nothing_to_press() {
     let touring = MountView {
         step: StepState::Running,

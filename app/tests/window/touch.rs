@@ -105,6 +105,21 @@ fn a_finished_training_run_leads_to_the_models() {
 }
 
 #[test]
+fn touches_for_models_that_measured_the_screen_as_well_lead_to_the_models_first() {
+    let proposal = Some(Arc::new(placement()));
+    let finished = TouchView { placement_proposal: proposal.clone(), ..after(200, TouchPhase::Finished) };
+    let placed = TouchView { placement: proposal, ..finished.clone() };
+    let (fake, mut window) = window(with_touch(placed));
+    assert!(says(&window, "Next: train models on them."));
+    press_next(&mut window, "Train models");
+    assert_eq!(sent(&fake), []);
+    // Where nobody knows where the screen lies, that goes first.
+    let (fake, mut window) = self::window(with_touch(finished));
+    press_next(&mut window, "Use this place of the screen");
+    assert_eq!(sent(&fake), [TouchCommand::AcceptPlacement]);
+}
+
+#[test]
 fn what_moves_is_said_before_it_moves() {
     let (_, window) = window(with_touch(first_plan()));
     assert!(says(&window, "The right arm touches the glass"));

@@ -6,7 +6,7 @@ use plumbline::{Screen, ThemeChoice, WindowSettings};
 use plumbline_engine::view::{
     BoardTour, CaptureEnded, CollectedPair, EyesView, SourceStatus, SourceView, TourWaits, TwinView,
 };
-use plumbline_engine::{Command, EyesCommand, RobotCommand, SourceSpec, TwinCommand, View};
+use plumbline_engine::{Command, EyesCommand, RobotCommand, SourceCommand, SourceSpec, TwinCommand, View};
 
 use crate::fake::{Fake, click, says, shows};
 use crate::made_up::{everything, lying_board, twin};
@@ -110,8 +110,23 @@ fn a_tour_of_the_board_is_counted_and_goes_on_where_it_was_broken_off() {
         click(&mut window, "Skip this place");
         assert_eq!(fake.take_sent(), [Command::from(TwinCommand::SkipPlace)]);
     }
+    // Who looks elsewhere is told that, and not that the computer is slow.
+    let tour = Some(BoardTour { place: 9, of: 24, waits: Some(TourWaits::Look) });
+    for (spec, words) in [
+        (Some(SourceSpec::Folder("pairs".into())), "another source is shown, not the twin's eyes"),
+        (None, "the twin's eyes are closed"),
+    ] {
+        let elsewhere = SourceView { spec, ..source.clone() };
+        let twin = TwinView { board: Some(lying_board()), board_tour: tour, ..twin() };
+        fake.show(View { source: Arc::new(elsewhere), ..view(twin) });
+        window.run_steps(40);
+        assert!(says(&window, words) && !says(&window, "this computer has much to do"), "{words}");
+        fake.take_sent();
+        click(&mut window, "Look through the twin's eyes");
+        assert_eq!(fake.take_sent(), [Command::from(SourceCommand::Open(SourceSpec::Twin))]);
+    }
     fake.show(view(TwinView { board: Some(lying_board()), board_places_left: 16, ..twin() }));
-    window.run_steps(3);
+    window.run_steps(40);
     assert!(says(&window, "the board was not shown at 16 places yet"));
     fake.take_sent();
     click(&mut window, "Show the board at the other places");

@@ -102,6 +102,8 @@ pub struct ModelReport {
     pub milliseconds_after: f64,
     /// How its names fit those of the set; null if they are the same.
     pub names: Option<String>,
+    /// What its scores are worth where it proposed labels of the set itself; null where it did not.
+    pub judged_by_itself: Option<String>,
     /// Images that could not be used, and those on which it failed.
     pub skipped: Vec<String>,
 }
@@ -311,6 +313,7 @@ fn model_report(evaluation: &ModelEvaluation) -> ModelReport {
         milliseconds_network: evaluation.timing.network_s * 1e3,
         milliseconds_after: evaluation.timing.after_s * 1e3,
         names: None,
+        judged_by_itself: evaluation.judged_by_itself(),
         skipped: skipped.collect(),
     }
 }

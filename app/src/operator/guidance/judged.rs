@@ -1,17 +1,23 @@
 //! What to do next with a calibration of the eyes that was solved: judging it, putting it in use.
 
 use jiff::Timestamp;
+use plumbline_engine::View;
 use plumbline_engine::view::EyesView;
 use plumbline_widgets::format;
 
+use super::onward::after_the_eyes;
 use super::sentence::{Guidance, say};
 use super::{dropped, verdict};
 use crate::operator::words::health::not_offered;
 use crate::operator::{Action, Screen};
 
-pub(super) fn judge(eyes: &EyesView) -> Guidance {
+pub(super) fn judge(view: &View) -> Guidance {
+    let eyes = &*view.eyes;
     let count = eyes.collected.len() - dropped(eyes);
     let Some(proposal) = &eyes.proposal else {
+        if let Some(guidance) = after_the_eyes(view, "The calibration is in use.") {
+            return guidance;
+        }
         return match (&eyes.in_use, count) {
             (Some(_), _) => say("Nothing is proposed; the calibration in use is shown.")
                 .then("Collect pairs", Action::Go(Screen::Collect)),
@@ -52,7 +58,8 @@ fn against(eyes: &EyesView) -> Option<Guidance> {
     })
 }
 
-pub(super) fn accept(eyes: &EyesView) -> Guidance {
+pub(super) fn accept(view: &View) -> Guidance {
+    let eyes = &*view.eyes;
     match (&eyes.proposal, &eyes.in_use) {
         (Some(proposal), _) if proposal.stale.is_some() => {
             say(proposal.stale.clone().unwrap_or_default()).then("Solve again", Action::Solve)
@@ -75,9 +82,9 @@ pub(super) fn accept(eyes: &EyesView) -> Guidance {
                 say(verdict.sentence).warn().then("Accept it all the same", Action::Accept)
             }
         }
-        (None, Some(_)) => {
+        (None, Some(_)) => after_the_eyes(view, "The calibration is in use.").unwrap_or_else(|| {
             say("The calibration is in use.").then("Look at the eyes", Action::Go(Screen::Live))
-        }
+        }),
         (None, None) => {
             say("No calibration is in use yet.").then("Collect pairs", Action::Go(Screen::Collect))
         }

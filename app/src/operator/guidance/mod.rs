@@ -8,6 +8,7 @@ mod grasp;
 mod handeye;
 mod judged;
 mod models;
+mod onward;
 mod robot;
 mod sentence;
 mod standing;
@@ -20,7 +21,7 @@ pub use sentence::Guidance;
 pub use touch::{done_of, minutes, wanted, what_moves};
 
 use plumbline_engine::View;
-use plumbline_engine::view::{CaptureHint, EyesView, Proposal, SourceStatus};
+use plumbline_engine::view::{CaptureHint, Connection, EyesView, Proposal, SourceStatus};
 use plumbline_widgets::format;
 
 use super::{Action, CommissionAction, RobotAction, Screen, faults};
@@ -45,8 +46,8 @@ pub fn guidance(view: &View, screen: Screen) -> Guidance {
         Screen::Commission => commissioning(view),
         Screen::Live => live(view),
         Screen::Collect => collect(view),
-        Screen::Judge => judged::judge(&view.eyes),
-        Screen::Accept => judged::accept(&view.eyes),
+        Screen::Judge => judged::judge(view),
+        Screen::Accept => judged::accept(view),
         Screen::Mount => robot::mount(view),
         Screen::Touch => touch::touch(view),
         Screen::Models => models::models(view),
@@ -88,6 +89,9 @@ fn source_trouble(view: &View) -> Option<Guidance> {
             say("The twin runs; its eyes are closed.")
                 .then("Look through the twin's eyes", Action::Robot(RobotAction::TwinEyes)),
         ),
+        SourceStatus::None if matches!(view.robot.connection, Connection::Connecting { .. }) => {
+            robot::trouble(&view.robot)
+        }
         SourceStatus::None => Some(
             say("No images yet: open a folder of pairs, or drop one on the window.")
                 .then("Open a folder of pairs…", Action::OpenFolder),
@@ -133,6 +137,9 @@ fn live(view: &View) -> Guidance {
     if view.eyes.in_use.is_none() {
         return say("The eyes are not calibrated, so nothing can be measured yet.")
             .then("Calibrate the eyes", Action::Go(Screen::Collect));
+    }
+    if let Some(guidance) = onward::after_the_eyes(view, "The eyes are calibrated.") {
+        return guidance;
     }
     match view.source.replay {
         Some(replay) if !replay.playing => {

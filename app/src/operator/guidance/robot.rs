@@ -1,11 +1,12 @@
 //! What to do next with the robot and with the mount of its eyes.
 
-use plumbline_engine::View;
 use plumbline_engine::view::{
     CaptureHint, Connection, MotionState, RobotView, SourceStatus, StepState, TourWaits,
 };
+use plumbline_engine::{SourceSpec, View};
 use plumbline_widgets::format;
 
+use super::onward;
 use super::sentence::{Guidance, say};
 use crate::operator::words::robot::{move_sentence, moved_name, silent_together};
 use crate::operator::{Action, MountAction, RobotAction, Screen};
@@ -139,10 +140,13 @@ pub(super) fn mount(view: &View) -> Guidance {
         return say(next_or(view, &format!("The head turns to {poses} and looks at each; the arms stay.")))
             .then(format!("Turn the head to {poses}"), Action::Mount(MountAction::Tour));
     }
-    if !mount.views.is_empty() {
+    if !mount.views.is_empty() && !mount.is_solved {
         let views = format::count(mount.views.len(), "view");
         return say(next_or(view, &format!("{views} taken. Next: solve.")))
             .then(format!("Solve {views}"), Action::Mount(MountAction::Solve));
+    }
+    if let Some(guidance) = onward::after_the_mount(view, "The mount of the eyes is in use.") {
+        return guidance;
     }
     if view.twin.running && view.twin.board.is_none() {
         return say("The board has to lie where both eyes see it; the head turns, the board stays.")
@@ -170,10 +174,26 @@ fn next_or(view: &View, otherwise: &str) -> String {
 /// The twin's board is shown at places, or was and is not at all of them.
 pub(super) fn board_on_its_way(view: &View, pairs: usize) -> Option<Guidance> {
     let twin = &view.twin;
-    if !twin.running || view.source.status != SourceStatus::Running {
+    if !twin.running {
         return None;
     }
     let so_far = format::count(pairs, "pair");
+    // It goes on without anybody who looks.
+    if let Some(tour) = twin.board_tour.filter(|_| view.source.spec != Some(SourceSpec::Twin)) {
+        let at = format!("The board is at place {} of {}: {so_far} collected.", tour.place, tour.of);
+        let instead = match &view.source.spec {
+            None => "the twin's eyes are closed",
+            Some(_) => "another source is shown, not the twin's eyes",
+        };
+        return Some(
+            say(format!("{at} Nobody looks at it there: {instead}."))
+                .warn()
+                .then("Look through the twin's eyes", Action::Robot(RobotAction::TwinEyes)),
+        );
+    }
+    if view.source.status != SourceStatus::Running {
+        return None;
+    }
     if let Some(tour) = twin.board_tour {
         let how = match view.eyes.auto_capture {
             true => format!("{so_far} captured by themselves"),

@@ -1,7 +1,9 @@
 //! What to do next with touching the screen: one button, named by what it does.
 
 use plumbline_engine::View;
-use plumbline_engine::view::{Figure, PlanView, Subject, TouchCounts, TouchOutcome, TouchPhase, TouchView};
+use plumbline_engine::view::{
+    Figure, PlanView, StepState, Subject, TouchCounts, TouchOutcome, TouchPhase, TouchView,
+};
 use plumbline_model::touch_plan::{Finger, Purpose};
 use plumbline_widgets::format;
 
@@ -132,11 +134,11 @@ pub fn done_of(counts: TouchCounts) -> usize {
 
 fn finished(view: &View) -> Guidance {
     let touch = &view.touch;
-    if touch.placement_proposal.is_some() {
+    let purpose = touch.plan.as_ref().map(|plan| plan.options.purpose);
+    if is_screen_to_be_decided(touch, purpose) {
         return say("The screen was measured. Look at how far it moved, then use it.")
             .then("Use this place of the screen", Action::Touch(TouchAction::AcceptScreen));
     }
-    let purpose = touch.plan.as_ref().map(|plan| plan.options.purpose);
     let touched = format::count(touch.counts.touched, "touch");
     let finger = touch.plan.as_ref().map(|plan| plan.options.finger);
     match purpose {
@@ -157,6 +159,13 @@ fn finished(view: &View) -> Guidance {
         Some(Purpose::Train) | None => say(format!("{touched} are on disk. Next: train models on them."))
             .then("Train models", Action::Go(Screen::Models)),
     }
+}
+
+/// Whether a measured place of the screen is what the operator waits for. Touches that were made for something
+/// else measure it as well: what they were made for goes first, and their place waits beside them.
+fn is_screen_to_be_decided(touch: &TouchView, purpose: Option<Purpose>) -> bool {
+    let measured_for_it = matches!(purpose, Some(Purpose::PlaceScreen) | None);
+    touch.placement_proposal.is_some() && (touch.placement.is_none() || measured_for_it)
 }
 
 /// How well the finger lands; what the effects are worth where touches were sent both ways.
@@ -206,7 +215,8 @@ fn before_check_m(view: &View, mean_m: f64) -> Option<f64> {
 fn first(view: &View) -> Guidance {
     let touch = &view.touch;
     debug_assert!(!is_under_way(&touch.phase));
-    if touch.placement_proposal.is_some() {
+    let purpose = touch.plan.as_ref().map(|plan| plan.options.purpose);
+    if is_screen_to_be_decided(touch, purpose) {
         return finished(view);
     }
     if !touch.unfinished.is_empty() {
@@ -217,8 +227,11 @@ fn first(view: &View) -> Guidance {
         return say("First measure where the screen lies: touch its corners. Planning moves nothing.")
             .then("Plan to touch the corners", Action::Touch(TouchAction::Plan(Preset::Corners)));
     }
-    say("Plan what shall be touched; planning moves nothing.")
-        .then("Plan a first calibration", Action::Touch(TouchAction::Plan(Preset::First)))
+    let said = match &touch.step {
+        StepState::Stale { why } => say(format!("{why} Planning moves nothing.")).warn(),
+        _ => say("Plan what shall be touched; planning moves nothing."),
+    };
+    said.then("Plan a first calibration", Action::Touch(TouchAction::Plan(Preset::First)))
 }
 
 #[cfg(test)]

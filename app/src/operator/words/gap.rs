@@ -118,12 +118,12 @@ pub fn knowledge(knowledge: &Knowledge, candidates: &[Candidate]) -> (&'static s
     }
 }
 
-/// "92.0 % of the gap is closed (85.0 to 97.0 %)".
+/// "92 % of the gap is closed (95 % interval: 85 to 97 %)."
 pub fn closure(shown: &Shown) -> Option<String> {
     let closure = shown.closure?;
     let range = shown.closure_range.map_or_else(String::new, |[low, high]| {
-        let low = Quantity::Ratio.number(low);
-        format!(" ({low} to {}, 95 %)", format::percent(high))
+        let low = format::percent(low);
+        format!(" (95 % interval: {} to {})", low.trim_end_matches(" %"), format::percent(high))
     });
     Some(format!("{} of the gap is closed{range}.", format::percent(closure)))
 }

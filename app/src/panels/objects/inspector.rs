@@ -76,9 +76,12 @@ fn timing(ui: &mut Ui, detect: &DetectView, timing: &DetectionTiming) {
         detect.statistics.per_second.map_or_else(String::new, |rate| format!(", {}", format::hertz(rate)));
     ui.label(theme::small(ui, format!("{} a pair{rate}", ms(timing.total()))))
         .on_hover_text("Both eyes, from the images to the places; and pairs per second");
-    let number = |duration| ms(duration).trim_end_matches(" ms").to_owned();
+    let number = |duration: std::time::Duration| {
+        let ms = 1e3 * duration.as_secs_f64();
+        if ms < 10.0 { format!("{ms:.1}") } else { format!("{ms:.0}") }
+    };
     let parts = format!(
-        "before {}, network {}, after {}, places {}",
+        "before {}, network {}, after {}, places {} ms",
         number(timing.before),
         number(timing.network),
         number(timing.after),

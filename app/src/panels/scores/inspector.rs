@@ -35,7 +35,8 @@ pub fn show(ui: &mut Ui, view: &View, state: &mut PanelState, _outbox: &mut Outb
         KeyValue::text("network", format::ms(1e-3 * network_ms)),
         KeyValue::text("its boxes", format::ms(1e-3 * after_ms)),
     ];
-    if scores.all.map50_95_interval.is_none() {
+    // Of what it proposed itself an interval says nothing.
+    if scores.all.map50_95_interval.is_none() || scores.judged_by_itself.is_some() {
         rows.remove(1);
     }
     key_value_grid(ui, "score figures", &rows);

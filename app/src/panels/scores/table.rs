@@ -50,11 +50,12 @@ fn grid(ui: &mut Ui, cx: &mut PanelContext<'_>, table: &ScoreTable) {
 }
 
 fn model(ui: &mut Ui, scores: &ModelScores) {
+    let own = scores.judged_by_itself.as_deref();
     for score in [scores.tomato.as_ref(), scores.hands.as_ref(), Some(&scores.all)] {
         let (value, ends) = map50_95(score);
-        with_interval(ui, value, ends);
+        with_interval(ui, value, ends, own);
     }
-    with_interval(ui, Some(scores.all.map50), scores.all.map50_interval);
+    with_interval(ui, Some(scores.all.map50), scores.all.map50_interval, own);
     let network = format::significant(scores.times_ms[1], 3);
     let [before, _, after] = scores.times_ms.map(|ms| format::significant(ms, 2));
     ui.vertical(|ui| {
@@ -65,9 +66,16 @@ fn model(ui: &mut Ui, scores: &ModelScores) {
     });
 }
 
-fn with_interval(ui: &mut Ui, value: Option<f64>, ends: Option<[f64; 2]>) {
+/// `own`: why the figure says nothing of how good the detector is; an interval of it would say nothing either.
+fn with_interval(ui: &mut Ui, value: Option<f64>, ends: Option<[f64; 2]>, own: Option<&str>) {
     ui.vertical(|ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
+        if let Some(own) = own.filter(|_| value.is_some()) {
+            let color = Role::Warning.color(theme::tokens(ui));
+            ui.label(RichText::new(figure(value)).color(color)).on_hover_text(own);
+            ui.add(Label::new(RichText::new("own labels").small().color(color)).extend()).on_hover_text(own);
+            return;
+        }
         ui.label(figure(value));
         let text = interval(ends);
         let small = Label::new(theme::small(ui, text)).extend();
@@ -100,7 +108,7 @@ pub fn said_of(row: &ScoreRow) -> Vec<String> {
         Err(why) => return vec![why.to_string()],
         Ok(scores) => scores,
     };
-    let mut said = Vec::new();
+    let mut said: Vec<String> = scores.judged_by_itself.iter().cloned().collect();
     if scores.other_order {
         said.push("its classes have another order; they are matched by name.".to_owned());
     }

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use plumbline_model::{Chessboard, Stamp, StereoFrame};
+use image::GrayImage;
+use plumbline_model::{Chessboard, InnerCorners, Stamp, StereoFrame};
 use plumbline_vision::chessboard;
 
 use super::look::Look;
@@ -50,11 +51,17 @@ impl Stage for CornersStage {
         let [left, right] = glimpse_in_both([&left_gray, &right_gray], &board);
         let other_board =
             (left.is_none() && right.is_none() && self.is_time_for_another(frame.stamp.captured_at))
-                .then(|| board_seen(chessboard::recognize(&left_gray), &board));
+                .then(|| board_seen(recognized_by_both([&left_gray, &right_gray]), &board));
         let edge_width_px = of_both(&board, [&left_gray, &right_gray], [left.as_ref(), right.as_ref()]);
         let gray = [Arc::new(left_gray), Arc::new(right_gray)];
         Look { frame, board, left, right, gray, edge_width_px, other_board }
     }
+}
+
+/// What is a board to both eyes: on a speckled table one of them sees a few squares where there are none.
+fn recognized_by_both([left, right]: [&GrayImage; 2]) -> Option<InnerCorners> {
+    let seen = chessboard::recognize(left)?;
+    (chessboard::recognize(right) == Some(seen)).then_some(seen)
 }
 
 impl CornersStage {
@@ -66,5 +73,29 @@ impl CornersStage {
             self.looked_for_another = Some(now);
         }
         due
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A flat board of so many squares, seen from the front.
+    fn board(columns: u32, rows: u32) -> GrayImage {
+        GrayImage::from_fn(320, 240, |x, y| {
+            let (column, row) = ((x as i32 - 40).div_euclid(24), (y as i32 - 40).div_euclid(24));
+            let on_board = (0..columns as i32).contains(&column) && (0..rows as i32).contains(&row);
+            image::Luma([if on_board && (column + row) % 2 == 0 { 20 } else { 230 }])
+        })
+    }
+
+    #[test]
+    fn another_board_is_one_to_both_eyes() {
+        let (small, large, blank) = (board(6, 5), board(8, 6), board(0, 0));
+        let seen = recognized_by_both([&small, &small]).expect("a board that both eyes see");
+        assert_eq!((seen.columns, seen.rows), (5, 4));
+        for (left, right) in [(&small, &blank), (&blank, &small), (&small, &large)] {
+            assert_eq!(recognized_by_both([left, right]), None, "squares to one eye alone");
+        }
     }
 }

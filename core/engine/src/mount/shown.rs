@@ -1,5 +1,7 @@
 //! What the window shows of the workflow.
 
+use std::collections::BTreeSet;
+
 use plumbline_model::counted;
 use plumbline_vision::mount::{HeadView, MountCalibration, MountChange};
 
@@ -14,6 +16,7 @@ impl MountWorkflow {
         MountView {
             step: self.step_state(around),
             views: self.views.iter().map(|view| self.summary(view, around)).collect(),
+            is_solved: self.is_solved(),
             planned: self.still_to_be_seen().into(),
             tour: self.tour.as_ref().map(|tour| self.tour_view(tour)),
             next: self.next(around),
@@ -31,6 +34,14 @@ impl MountWorkflow {
     pub(super) fn seen_so_far(&self) -> usize {
         let by_tour = |tour: &Tour| self.planned.len().saturating_sub(tour.remaining());
         self.tour.as_ref().map_or(self.seen, by_tour)
+    }
+
+    /// Whether the mount in use was solved from just the views that are here: then there is nothing to solve.
+    fn is_solved(&self) -> bool {
+        let Some(mount) = self.in_use.as_deref().filter(|_| !self.views.is_empty()) else { return false };
+        let used = mount.per_view.iter().map(|fit| &fit.name);
+        let used: BTreeSet<&String> = used.chain(mount.rejected.iter().map(|view| &view.name)).collect();
+        self.views.len() == used.len() && self.views.iter().all(|view| used.contains(&view.name))
     }
 
     fn tour_view(&self, tour: &Tour) -> MountTour {
@@ -79,6 +90,10 @@ impl MountWorkflow {
             return "Connect to the robot or the twin: the head's angles have to be known.".to_owned();
         }
         let left = self.still_to_be_seen().len();
+        if left == 0 && self.is_solved() {
+            return "The mount of the eyes is in use. Plan head poses again when the head was taken apart."
+                .to_owned();
+        }
         if self.views.len() >= LEAST_VIEWS && left == 0 {
             return format!("{} taken. Solve the mount.", counted(self.views.len(), "view"));
         }

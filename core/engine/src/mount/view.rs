@@ -13,6 +13,8 @@ pub struct MountView {
     pub step: StepState,
     /// Views collected so far.
     pub views: Arc<[HeadViewSummary]>,
+    /// Whether the mount in use was solved from just these views.
+    pub is_solved: bool,
     /// Planned head poses (pan, tilt; rad) that are still to be seen.
     pub planned: Arc<[(f64, f64)]>,
     /// The tour of the head through them, while it is under way.

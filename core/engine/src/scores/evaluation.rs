@@ -128,6 +128,7 @@ fn scores_of(evaluation: &ModelEvaluation) -> ModelScores {
         unknown_to_model: evaluation.agreement.unknown_to_model.clone(),
         unknown_to_set: evaluation.agreement.unknown_to_set.clone(),
         other_order: !evaluation.agreement.renumbered.is_empty(),
+        judged_by_itself: evaluation.judged_by_itself(),
         confusion: confusion(evaluation),
         confusion_confidence: evaluation.confidence as f32,
     }

@@ -101,6 +101,8 @@ pub struct ModelScores {
     pub unknown_to_set: Vec<String>,
     /// Whether the class numbers of model and set differ, so that they were matched by name.
     pub other_order: bool,
+    /// What the scores are worth where labels of the set are boxes that the model proposed itself, a sentence.
+    pub judged_by_itself: Option<String>,
     /// Boxes per cell: row by truth, column by what was found; background last.
     pub confusion: Vec<Vec<usize>>,
     /// Confidence from which boxes count in the matrix.

@@ -13,6 +13,7 @@ mod interval;
 mod look;
 mod matching;
 mod operating;
+mod own;
 mod run;
 mod summary;
 #[cfg(test)]

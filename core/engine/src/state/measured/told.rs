@@ -8,6 +8,7 @@ use plumbline_model::counted;
 use crate::drift::PlacesResult;
 use crate::eyes::ToldHealth;
 use crate::scores::Evaluation;
+use crate::scores::view::ScoreRow;
 use crate::timeline::Measured;
 use crate::timeline::view::{Figure, Subject};
 use crate::trials::view::ShownTrials;
@@ -103,6 +104,8 @@ pub(super) fn of_detectors(at: Timestamp, judged: &Evaluation) -> Option<Measure
         table.rows.iter().filter_map(|row| Some((&row.model, row.scores.as_ref().ok()?.all.map50_95)));
     let scored: Vec<(&String, f64)> = scored.filter(|(_, score)| (0.0..=1.0).contains(score)).collect();
     let best = scored.iter().map(|(_, score)| *score).fold(f64::NAN, f64::max);
+    let is_own = |row: &ScoreRow| row.scores.as_ref().is_ok_and(|scores| scores.judged_by_itself.is_some());
+    let own = if table.rows.iter().any(is_own) { ", labels of its own among them" } else { "" };
     let words: Vec<String> =
         scored.iter().map(|(model, score)| format!("{model} {:.1} %", 100.0 * score)).collect();
     (!words.is_empty()).then(|| Measured {
@@ -113,7 +116,7 @@ pub(super) fn of_detectors(at: Timestamp, judged: &Evaluation) -> Option<Measure
         before: None,
         after: Figure::Share(best),
         basis: format!(
-            "mAP50–95{} on {} of {}",
+            "mAP50–95{} on {} of {}{own}",
             if scored.len() > 1 { " of the best" } else { "" },
             counted(table.images, "image"),
             name_of(&table.set)

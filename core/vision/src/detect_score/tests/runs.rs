@@ -84,6 +84,32 @@ fn a_model_with_its_classes_in_another_order_is_judged_by_name() {
 }
 
 #[test]
+fn a_model_that_is_judged_by_boxes_of_its_own_is_told_from_one_that_is_only_good() {
+    let folder = TempDir::new().expect("a folder");
+    let own = set(folder.path());
+    // By a label file a box comes back within its rounding; by hand it does not.
+    let moved = |set: &YoloSet, images: usize, by_px: f32| {
+        let mut moved = set.clone();
+        for label in moved.images.iter_mut().take(images).flat_map(|image| &mut image.boxes) {
+            label.area.x1_px += by_px;
+        }
+        moved
+    };
+    let judged = |set: &YoloSet| {
+        let mut oracle = Oracle { names: set.names.clone(), answers: vec![Some(vec![0, 1]); 6] };
+        let judged = evaluate(&mut oracle, set, &EvaluateOptions::default(), &Unattended).expect("judged");
+        assert!(judged.scores.overall.ap.expect("truth") > 0.8);
+        (judged.own_labels(), judged.judged_by_itself())
+    };
+    let (count, said) = judged(&moved(&own, 6, 0.01));
+    assert_eq!(count, 12);
+    assert!(said.expect("told").starts_with("judged by itself: 12 of 12 labels stand exactly where"));
+    let (count, said) = judged(&moved(&own, 5, 0.4));
+    assert_eq!((count, said.is_some()), (2, true), "those of one image of six");
+    assert_eq!(judged(&moved(&own, 6, 0.4)), (0, None), "drawn by hand");
+}
+
+#[test]
 fn a_class_that_the_model_does_not_know_counts_as_missed() {
     let folder = TempDir::new().expect("a folder");
     let set = set(folder.path());

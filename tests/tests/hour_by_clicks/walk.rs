@@ -1,0 +1,159 @@
+//! Somebody who presses what the window offers, and counts.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use plumbline_tests::{Window, click, thread_processor_time, view, window_of_size};
+
+use crate::legs::Leg;
+use crate::table::{LegTaken, Taken};
+use crate::watch::{Watch, is_computing, is_under_way};
+
+/// A twin with errors like those of a robot.
+const SCENARIO: &str = "lab";
+
+/// For how long a leg is waited for: so long takes nothing that will still come.
+const PATIENCE: Duration = Duration::from_secs(1800);
+
+/// So long a button has to mean the same before it is pressed: it is read first.
+const READ_FOR: Duration = Duration::from_secs(1);
+
+/// Who sees no answer to a click presses once more.
+const ANSWERED_WITHIN: Duration = Duration::from_secs(5);
+
+/// The line at the foot in which the big button stands.
+const BOTTOM_LINE_PT: f32 = 52.0;
+
+/// The big button's own height; what else stands there is smaller.
+const BIG_PT: f32 = 35.0;
+
+/// A window and what was seen in it so far.
+pub struct Walk {
+    window: Window,
+    size: egui::Vec2,
+    watch: Watch,
+    legs: Vec<LegTaken>,
+    lost: Vec<String>,
+    began: Instant,
+    /// The button that is being read, and since when.
+    read: Option<(String, Instant)>,
+}
+
+impl Walk {
+    /// The first start on the twin, with nothing done before.
+    pub fn begin(data_dir: &Path) -> Self {
+        let size = egui::vec2(1440.0, 900.0);
+        Self {
+            began: Instant::now(),
+            window: window_of_size(data_dir, Some(SCENARIO), size),
+            size,
+            watch: Watch::default(),
+            legs: vec![],
+            lost: vec![],
+            read: None,
+        }
+    }
+
+    /// Goes on until the leg is behind.
+    ///
+    /// # Panics
+    /// When it is not within half an hour.
+    pub fn take(&mut self, leg: &Leg) {
+        let began = if self.legs.is_empty() { self.began } else { Instant::now() };
+        let (pauses, slow) = (self.watch.pauses.len(), self.watch.slow.len());
+        let mut clicks: Vec<String> = vec![];
+        if leg.is_chosen {
+            self.click(leg.rail, &mut clicks);
+        }
+        while !(leg.is_behind)(&view(&self.window)) {
+            let waited = began.elapsed();
+            assert!(waited < PATIENCE, "{} is not behind: {clicks:#?}, {:#?}", leg.name, self.watch);
+            self.step(leg.name);
+            let now = view(&self.window);
+            if is_under_way(&now) || (leg.is_behind)(&now) {
+                self.read = None;
+                continue;
+            }
+            let Some(label) = self.taken(leg).or_else(|| self.primary()).filter(|label| self.is_read(label))
+            else {
+                continue;
+            };
+            let goes_round = clicks.iter().filter(|clicked| **clicked == label).count() > 1;
+            if goes_round {
+                self.lost.push(format!("{}: \"{label}\" again and again", leg.name));
+                assert!(self.lost.len() < 10, "{:#?}", self.lost);
+                self.click(leg.rail, &mut clicks);
+            } else {
+                self.click(&label, &mut clicks);
+            }
+        }
+        self.legs.push(LegTaken {
+            name: leg.name,
+            clicks,
+            time: began.elapsed(),
+            pauses: self.watch.pauses.len() - pauses,
+            slow: self.watch.slow.len() - slow,
+        });
+    }
+
+    /// What all of it took.
+    pub fn end(self) -> Taken {
+        let Watch { pauses, slow, frames, longest, warnings, .. } = self.watch;
+        Taken { legs: self.legs, pauses, slow, frames, longest, lost: self.lost, warnings }
+    }
+
+    fn click(&mut self, label: &str, clicks: &mut Vec<String>) {
+        println!("{:7.1} s  {label}", self.began.elapsed().as_secs_f64());
+        click(&mut self.window, label);
+        clicks.push(label.to_owned());
+        // The engine takes in what was pressed while the next frames are drawn: who presses waits for that.
+        let pressed = Instant::now();
+        while pressed.elapsed() < ANSWERED_WITHIN && self.primary().as_deref() == Some(label) {
+            self.step(label);
+        }
+    }
+
+    /// One frame, and what is to be seen in it.
+    fn step(&mut self, doing: &str) {
+        let computed = is_computing(&view(&self.window));
+        let before = thread_processor_time();
+        self.window.step();
+        let took = thread_processor_time().zip(before).and_then(|(now, before)| now.checked_sub(before));
+        let now = view(&self.window);
+        if let Some(took) = took {
+            self.watch.frame(took, computed || is_computing(&now), doing);
+        }
+        self.watch.look(&now);
+        std::thread::sleep(Duration::from_millis(10));
+    }
+
+    /// Whether a button was there long enough to be read.
+    fn is_read(&mut self, label: &str) -> bool {
+        let before = self.read.take().filter(|(read, _)| read == label);
+        let (_, since) = self.read.insert(before.unwrap_or_else(|| (label.to_owned(), Instant::now())));
+        since.elapsed() >= READ_FOR
+    }
+
+    /// The button that this leg takes wherever it is, where it can be pressed.
+    fn taken(&self, leg: &Leg) -> Option<String> {
+        let mut found = self.window.query_all_by_label_contains(leg.takes?);
+        let is_button = |node: &egui_kittest::Node<'_>| {
+            let node = node.accesskit_node();
+            node.role() == egui::accesskit::Role::Button && !node.is_disabled()
+        };
+        found.find(is_button)?.accesskit_node().label()
+    }
+
+    /// The big button of the bottom line, where it can be pressed.
+    fn primary(&self) -> Option<String> {
+        let foot = self.size.y - BOTTOM_LINE_PT;
+        let is_big = |node: &egui_kittest::Node<'_>| {
+            let rect = node.rect();
+            rect.height() >= BIG_PT && rect.top() >= foot && rect.bottom() <= self.size.y
+        };
+        let buttons = self.window.query_all_by_role(egui::accesskit::Role::Button);
+        let mut big = buttons.filter(is_big).filter(|node| !node.accesskit_node().is_disabled());
+        big.next()?.accesskit_node().label()
+    }
+}
