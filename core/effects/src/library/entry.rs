@@ -135,6 +135,8 @@ pub(crate) enum Is {
     Planned,
     /// An encoder sees it, so that a prediction from encoder angles already holds it.
     SeenByEncoder,
+    /// It sits between motor and joint: an encoder behind the gear sees it, one at the motor does not.
+    SeenBehindGear,
     /// It goes with a load, and so with masses.
     OfLoad,
     /// A robot's description can hold it, as the place of a joint or of the tip.

@@ -1,6 +1,7 @@
 //! What was measured, row by row, as predictions need it: one list for touches, poses and
 //! localizations of any number of sessions.
 
+mod copies;
 mod derive;
 mod lags;
 mod read;
@@ -13,6 +14,8 @@ use plumbline_model::robot::{DescriptionError, RigError};
 use crate::arm::Arm;
 use crate::eyes::Eyes;
 use crate::library::{Present, Surface};
+
+pub use copies::copies_of_commands;
 
 pub use crate::observation::{Observation, Unit, What};
 

@@ -54,7 +54,7 @@ pub(super) static TOOTH_RIPPLE: Entry = Entry {
     shown: |rows| rows.arm,
     act: Act::Turn(wave),
     reported: Effect::wave,
-    is: &[],
+    is: &[Is::SeenBehindGear],
 };
 
 pub(super) static BACKLASH: Entry = Entry {
@@ -67,7 +67,7 @@ pub(super) static BACKLASH: Entry = Entry {
     shown: |rows| rows.directions,
     act: Act::Turn(|at| 0.5 * at.value() * at.direction()),
     reported: Effect::size,
-    is: &[Is::Planned],
+    is: &[Is::Planned, Is::SeenBehindGear],
 };
 
 pub(super) static GRAVITY_BACKLASH: Entry = Entry {
@@ -80,7 +80,7 @@ pub(super) static GRAVITY_BACKLASH: Entry = Entry {
     shown: |rows| rows.arm,
     act: Act::Turn(|at| 0.5 * at.value() * (at.torque_nm() / SEATING_TORQUE_NM).tanh()),
     reported: Effect::size,
-    is: &[Is::Planned, Is::OneSided],
+    is: &[Is::Planned, Is::OneSided, Is::SeenBehindGear],
 };
 
 pub(super) static STICTION: Entry = Entry {
@@ -132,7 +132,7 @@ pub(super) static SLIPPED_HORN: Entry = Entry {
     shown: Known::has_moments,
     act: Act::Turn(|at| at.value() * at.effect.stepped(at.t_secs())),
     reported: Effect::plain,
-    is: &[],
+    is: &[Is::SeenBehindGear],
 };
 
 pub(super) static JOINT_COUPLING: Entry = Entry {
@@ -145,7 +145,7 @@ pub(super) static JOINT_COUPLING: Entry = Entry {
     shown: |rows| rows.arm,
     act: Act::Turn(|at| at.value() * at.angle_before_rad()),
     reported: Effect::coupled,
-    is: &[Is::Planned],
+    is: &[Is::Planned, Is::SeenBehindGear],
 };
 
 pub(super) static AXIS_SKEW: Entry = Entry {
