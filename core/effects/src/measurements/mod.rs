@@ -131,6 +131,21 @@ pub enum MeasurementsError {
         /// The tip.
         tip: String,
     },
+    /// A column in the unit of another kind of motion.
+    #[error(
+        "{session}: joint {joint} {moves} in the robot's description: log where it stood in {column}, or give the rig \
+         that it was recorded with"
+    )]
+    OtherMotion {
+        /// The session.
+        session: String,
+        /// The joint.
+        joint: String,
+        /// "turns" or "slides".
+        moves: &'static str,
+        /// The column that such a joint has.
+        column: String,
+    },
     /// The rig was only measured and has no such part.
     #[error("{session}: {error}")]
     Lacks {

@@ -356,7 +356,12 @@ impl Contents {
                     rig.name
                 )
             };
-            let arm = effect.tip.as_deref().map(|tip| Arm::of_rig(rig, tip)).transpose().map_err(misfit)?;
+            let arm = effect
+                .tip
+                .as_deref()
+                .map(|tip| Arm::logged(rig, tip, &rig.description.slides()))
+                .transpose()
+                .map_err(misfit)?;
             let eyes = Eyes::of_rig(rig).ok();
             let Some(known) =
                 Effect::find(&effect.id, &effect.site, effect.shape, arm.as_ref(), eyes.as_ref())

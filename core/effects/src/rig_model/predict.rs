@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, Isometry3};
 use plumbline_model::predict::{PredictError, SessionPrediction, predict_session};
 use plumbline_model::robot::Rig;
-use plumbline_model::session::{LocalizationTable, PoseTable, Screen, Session, TouchTable, Touchscreen};
+use plumbline_model::session::{LocalizationTable, Screen, Session, TouchTable, Touchscreen};
 use plumbline_model::{Pixel, Point};
 
 use super::{PlacedExternal, PlacedScreen, RigModel};
@@ -218,7 +218,7 @@ fn filled(session: &Session, nominal: &SessionPrediction) -> Session {
                 row
             })
             .collect();
-        filled.poses = Some(PoseTable::from_rows(table.joints().to_vec(), &rows));
+        filled.poses = Some(table.with_rows(&rows));
     }
     if let Some(table) = &session.localizations {
         let rows: Vec<_> = table

@@ -30,7 +30,7 @@ pub fn stop_at_dead_columns(measurements: &Measurements) -> Result<(), GapError>
             let encoder = of(|row| row.encoder_rad.as_ref());
             for (prefix, own, other) in [("enc", encoder, commanded), ("cmd", commanded, encoder)] {
                 if own == Some((0.0, 0.0)) && other.is_some_and(|(low, high)| high - low > 0.05) {
-                    return Err(dead(format!("{prefix}_{}_rad", part.joint)));
+                    return Err(dead(part.column(prefix)));
                 }
             }
         }

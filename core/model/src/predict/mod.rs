@@ -258,9 +258,9 @@ struct Arm {
 
 impl Arm {
     fn of(rig: &Rig, logged: &SessionChain) -> Result<Self, PredictError> {
-        let chain = rig.chain(&logged.tip)?;
+        let chain = Chain::logged(&rig.description, &logged.tip, &rig.home(), &logged.joints)?;
         for joint in &logged.joints {
-            if let Some(kind) = rig.description.held_kind(joint) {
+            if let Some(kind) = rig.description.unmoved_kind(joint) {
                 let (joint, kind) = (joint.clone(), kind.to_owned());
                 return Err(DescriptionError::Kind { joint, kind }.into());
             }
