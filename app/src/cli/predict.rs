@@ -86,7 +86,7 @@ fn line(row: &PredictedRow) -> String {
             place(est_x_m, est_y_m, est_z_m),
             place(corrected_x_m, corrected_y_m, corrected_z_m)
         ),
-        PredictedRow::Poses { meas_x_m, meas_y_m, meas_z_m, angles } => {
+        PredictedRow::Poses { meas_x_m, meas_y_m, meas_z_m, angles, .. } => {
             format!("  pose  {}  ({angles})\n", format::position_mm([meas_x_m, meas_y_m, meas_z_m]))
         }
     }

@@ -33,13 +33,15 @@ pub struct Part {
     pub joint: String,
     /// Its name for people.
     pub title: String,
-    /// Its place in a posture.
-    pub index: JointIndex,
+    /// Its place in a posture; `None` for what slides, which no posture has.
+    pub index: Option<JointIndex>,
+    /// Moves along its axis, by meters, instead of about it: all that is said of its angle is then of its place.
+    pub slides: bool,
     /// Name of the link that it carries.
     pub link: String,
     /// From the turned frame of the joint before (or the base) to this joint at angle zero.
     pub before: Isometry3<f64>,
-    /// Axis of positive rotation, own frame.
+    /// Axis of positive motion, own frame.
     pub axis: Unit<Vector3<f64>>,
     /// Mass of everything up to the next joint, hand and other branches at rest, kg.
     pub mass_kg: f64,
@@ -50,7 +52,7 @@ pub struct Part {
 /// What is different from the nominal arm. All zero is the nominal arm exactly.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Deviation {
-    /// Added to each joint's angle, rad.
+    /// Added to each joint's angle, rad; to the place of what slides, m.
     pub joint_rad: Vec<f64>,
     /// Turns each joint before it moves: rotation vector in its own frame, rad.
     pub skew_rad: Vec<Vector3<f64>>,
@@ -119,46 +121,76 @@ pub struct Frames {
     pub robot_from_tip: Isometry3<f64>,
 }
 
+impl Part {
+    /// From the joint at zero to the joint where it stands (rad; m of what slides).
+    pub fn motion(&self, at: f64) -> Isometry3<f64> {
+        if self.slides {
+            Translation3::from(self.axis.into_inner() * at).into()
+        } else {
+            Isometry3::from_parts(Translation3::identity(), UnitQuaternion::from_axis_angle(&self.axis, at))
+        }
+    }
+
+    /// How it turns the frame after it, for the same.
+    pub(crate) fn turn(&self, at: f64) -> UnitQuaternion<f64> {
+        self.motion(at).rotation
+    }
+
+    /// Name of its column of commands (`cmd`) or encoders (`enc`).
+    pub fn column(&self, prefix: &str) -> String {
+        format!("{prefix}_{}_{}", self.joint, if self.slides { "m" } else { "rad" })
+    }
+}
+
 impl Arm {
     /// The arm of a rig that ends in the link `tip`; other joints are as in the rig's home pose.
     ///
     /// # Errors
     /// When there is no such link.
     pub fn of_rig(rig: &Rig, tip: &str) -> Result<Self, DescriptionError> {
+        Self::logged(rig, tip, &[])
+    }
+
+    /// The same with those of these joints that slide
+    /// ([`slide_axis`](plumbline_model::robot::Description::slide_axis)), for rows that say where they stood.
+    ///
+    /// # Errors
+    /// When there is no such link.
+    pub fn logged(rig: &Rig, tip: &str, logged: &[String]) -> Result<Self, DescriptionError> {
         let description = &*rig.description;
         let home = rig.home();
         let path = path_to(description, tip)?;
         let mut parts: Vec<Part> = vec![];
         let mut rest = Isometry3::identity();
+        let mut carriers: Vec<LinkIndex> = vec![];
         for joint in &path {
-            match &joint.kind {
-                JointKind::Revolute { axis, index, .. } => {
-                    let before =
-                        std::mem::replace(&mut rest, Isometry3::identity()) * joint.parent_from_joint;
-                    let title = rig
-                        .servo_of(*index)
-                        .map_or_else(|| joint.name.replace('_', " "), |servo| servo.title.clone());
-                    let link = description.links()[joint.child.0].name.clone();
-                    let (joint, mass_kg, center_m) = (joint.name.clone(), 0.0, Point3::origin());
-                    parts.push(Part {
-                        joint,
-                        title,
-                        index: *index,
-                        link,
-                        before,
-                        axis: *axis,
-                        mass_kg,
-                        center_m,
-                    });
-                }
-                JointKind::Fixed | JointKind::Coupled { .. } => rest *= joint.parent_from_child(&home),
-            }
+            let slide = description.slide_axis(&joint.name).filter(|_| logged.contains(&joint.name));
+            let (axis, index) = match &joint.kind {
+                JointKind::Revolute { axis, index, .. } => (*axis, Some(*index)),
+                JointKind::Fixed | JointKind::Coupled { .. } => match slide {
+                    Some(axis) => (axis, None),
+                    None => {
+                        rest *= joint.parent_from_child(&home);
+                        continue;
+                    }
+                },
+            };
+            let title = index
+                .and_then(|index| rig.servo_of(index))
+                .map_or_else(|| joint.name.replace('_', " "), |servo| servo.title.clone());
+            parts.push(Part {
+                joint: joint.name.clone(),
+                title,
+                index,
+                slides: index.is_none(),
+                link: description.links()[joint.child.0].name.clone(),
+                before: std::mem::replace(&mut rest, Isometry3::identity()) * joint.parent_from_joint,
+                axis,
+                mass_kg: 0.0,
+                center_m: Point3::origin(),
+            });
+            carriers.push(joint.child);
         }
-        let carriers: Vec<LinkIndex> = path
-            .iter()
-            .filter(|joint| matches!(joint.kind, JointKind::Revolute { .. }))
-            .map(|joint| joint.child)
-            .collect();
         lump_masses(rig, &carriers, &mut parts);
         let tip_m = rest.translation.vector;
         let masses_made_up = parts.iter().all(|part| part.mass_kg <= 0.0);
@@ -192,7 +224,7 @@ impl Arm {
         let mut place = Isometry3::identity();
         let (mut robot_from_joint, mut axes) = (vec![], vec![]);
         for (part, angle_rad) in self.parts.iter().zip(angles_rad) {
-            place = place * part.before * UnitQuaternion::from_axis_angle(&part.axis, *angle_rad);
+            place = place * part.before * part.motion(*angle_rad);
             robot_from_joint.push(place);
             axes.push(place.rotation * part.axis.into_inner());
         }
@@ -214,7 +246,7 @@ impl Arm {
             let shift = part.before.translation.vector + deviation.shift_m[i];
             place *= Isometry3::from_parts(Translation3::from(shift), part.before.rotation);
             place.rotation *= UnitQuaternion::from_scaled_axis(deviation.skew_rad[i]);
-            place.rotation *= UnitQuaternion::from_axis_angle(&part.axis, angle_rad + deviation.joint_rad[i]);
+            place *= part.motion(angle_rad + deviation.joint_rad[i]);
         }
         place *= self.last_from_tip * Translation3::from(deviation.tip_m);
         place.translation.vector += deviation.contact_m;

@@ -86,7 +86,9 @@ impl Known {
             only_watched: !of_eyes.is_empty() && of_eyes.iter().all(|row| row.stand.is_some()),
             eye_sets: measurements.sets_of_eyes(),
             background: of_eyes.iter().any(|row| row.background_m.is_some()),
-            commanded: of_arm.iter().any(|row| row.encoder_rad.is_none()),
+            commanded: of_arm
+                .iter()
+                .any(|row| row.encoder_rad.is_none() || row.encoder_copies.contains(&true)),
             lag: of_arm.iter().filter_map(|row| row.lag_rad()).flatten().any(|lag| lag.abs() > 1e-4),
             directions: differ(of_arm.iter().map(|row| row.direction.first().copied().unwrap_or(0.0))),
             direction: of_arm.iter().any(|row| row.direction.iter().any(|side| *side != 0.0)),

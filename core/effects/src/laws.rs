@@ -163,7 +163,7 @@ fn a_round_pad_touches_with_its_lowest_point() {
     // finger's joint is where the rig says, whatever its angle.
     let mut posture = rig.home();
     for (part, angle_rad) in arm.parts.iter().zip(ANGLES) {
-        posture[part.index] = angle_rad;
+        posture[part.index.expect("it turns")] = angle_rad;
     }
     let joint = rig.description.find_joint("r_indexfinger_x").expect("a joint of the hand");
     let knuckle = rig.description.forward(&posture).of(rig.description.joint(joint).child).translation_m();

@@ -173,6 +173,9 @@ pub struct Observation {
     pub marker: usize,
     /// Encoders are read behind the gears, and see their play.
     pub encoder_behind_gear: bool,
+    /// Joints whose encoder column only repeats the command, row after row of the session: nothing was read
+    /// there. Empty: none of them.
+    pub encoder_copies: Vec<bool>,
     /// Room temperature, °C.
     pub ambient_c: Option<f64>,
     /// Which stand, counted from 0 over all sessions: rows of one thing that stood still while the eyes
@@ -213,6 +216,7 @@ impl Observation {
             sigma_m: None,
             marker: 0,
             encoder_behind_gear: false,
+            encoder_copies: vec![],
             ambient_c: None,
             stand: None,
         }
@@ -222,6 +226,11 @@ impl Observation {
     /// commanded ones. Empty for what the eyes saw.
     pub fn angles_rad(&self) -> &[f64] {
         self.encoder_rad.as_deref().or(self.commanded_rad.as_deref()).unwrap_or_default()
+    }
+
+    /// Whether an encoder told where this joint stood.
+    pub fn reads_encoder(&self, joint: usize) -> bool {
+        self.encoder_rad.is_some() && !self.encoder_copies.get(joint).copied().unwrap_or(false)
     }
 
     /// From which angles predictions start.

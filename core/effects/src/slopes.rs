@@ -79,7 +79,11 @@ impl TurnSlopes {
             joints: steps
                 .iter()
                 .zip(&arm.parts)
-                .map(|(turned, part)| from_robot * (turned * *part.axis))
+                .map(
+                    |(turned, part)| {
+                        if part.slides { Vector3::zeros() } else { from_robot * (turned * *part.axis) }
+                    },
+                )
                 .collect(),
             skews: steps
                 .iter()
@@ -130,7 +134,7 @@ impl ArmSlopes {
             place *= Isometry3::from_parts(Translation3::from(shift), part.before.rotation);
             place.rotation *= UnitQuaternion::from_scaled_axis(deviation.skew_rad[i]);
             steps.push((place.translation.vector, before, place.rotation));
-            place.rotation *= UnitQuaternion::from_axis_angle(&part.axis, angle_rad + deviation.joint_rad[i]);
+            place *= part.motion(angle_rad + deviation.joint_rad[i]);
         }
         let last = place * arm.last_from_tip;
         let marker = last * Translation3::from(deviation.tip_m) * measured.mount;
@@ -167,7 +171,10 @@ impl ArmSlopes {
             shifts,
             turns: columns(|k| shifts * Vector3::ith(k, 1.0).cross(&(tip.coords - pivot))),
             joints: joints
-                .map(|((at, _, turned), part)| from_robot * (turned * *part.axis).cross(&lever(at)))
+                .map(|((at, _, turned), part)| {
+                    let axis = turned * *part.axis;
+                    from_robot * if part.slides { axis } else { axis.cross(&lever(at)) }
+                })
                 .collect(),
             skews: steps
                 .iter()

@@ -79,7 +79,7 @@ fn encoders_that_are_copies_of_commands_or_behind_gears_are_said() {
         row.encoder_behind_gear = true;
     }
     assert!(!says(&made, "copies of the commands"));
-    assert!(says(&made, "encoders = \"joint\" is read but not used"));
+    assert!(says(&made, "encoders = \"joint\": the encoders are taken to sit behind the gears"));
 }
 
 #[test]

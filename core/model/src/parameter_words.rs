@@ -4,8 +4,9 @@
 //! said in one place, for the sentence of a finding, its page and the window alike.
 
 /// A name, what is said before its value ("off by 1.8°"), and what it is called ("zero").
-const KNOWN: [(&str, &str, &str); 42] = [
+const KNOWN: [(&str, &str, &str); 44] = [
     ("offset_rad", "off by", "zero"),
+    ("offset_m", "off by", "zero"),
     ("scale", "too large by", "scale"),
     ("scale_u", "wider by", "width of the image"),
     ("scale_v", "higher by", "height of the image"),
@@ -13,6 +14,7 @@ const KNOWN: [(&str, &str, &str); 42] = [
     ("phase_rad", "swing shifted by", "start of the swing"),
     ("order", "swings per turn", "swings per turn"),
     ("width_rad", "from side to side", "width of the play"),
+    ("width_m", "from side to side", "width of the play"),
     ("step_rad", "jumped by", "jump"),
     ("t_secs", "at", "moment"),
     ("time_constant_s", "two thirds of it within", "pace"),

@@ -94,9 +94,22 @@ pub enum PredictedRow {
         meas_y_m: f64,
         /// Place of the tip.
         meas_z_m: f64,
+        /// How the tip is turned, where the session measured that.
+        #[serde(flatten, skip_serializing_if = "Option::is_none")]
+        turn: Option<Turn>,
         /// `encoder` or `commanded`.
         angles: &'static str,
     },
+}
+
+/// An orientation as a unit quaternion, its scalar part positive.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[allow(missing_docs, reason = "named like the columns of the session format")]
+pub struct Turn {
+    pub meas_qw: f64,
+    pub meas_qx: f64,
+    pub meas_qy: f64,
+    pub meas_qz: f64,
 }
 
 /// A place in both images, raw pixels.
@@ -132,14 +145,20 @@ pub fn predict(args: &PredictArgs, context: &dyn JobContext) -> Result<PredictRe
     if let (Some(own), Some(other)) = (own, &screen) {
         same_size(own, other)?;
     }
+    let frame = recorded.manifest.pose_setup().external_frame;
     let predicted = predict_session_with(&recorded, &rig, screen.as_ref(), &model)?;
     context.report(1.0, "predicted");
     Ok(PredictReport {
         rig: rig.name,
         screen: if screen.is_some() { "rig-model" } else { "session" },
         effects: model.effects().iter().map(ModelEffect::name).collect(),
-        gaps: gaps(&recorded, &predicted, screen.as_ref(), model.external().is_some() && !model.is_nominal()),
-        rows: rows(&predicted),
+        gaps: gaps(
+            &recorded,
+            &predicted,
+            screen.as_ref(),
+            model.external(frame.as_deref()).is_some() && !model.is_nominal(),
+        ),
+        rows: rows(&recorded, &predicted),
     })
 }
 
@@ -200,10 +219,11 @@ fn gap(table: &'static str, off_m: Vec<f64>) -> Option<TableGap> {
     })
 }
 
-fn rows(predicted: &SessionPrediction) -> Vec<PredictedRow> {
+fn rows(session: &Session, predicted: &SessionPrediction) -> Vec<PredictedRow> {
+    let turned = session.poses.as_ref().is_some_and(|table| table.table().has("meas_qw"));
     let touches = predicted.touches.iter().map(touch_row);
     let localizations = predicted.localizations.iter().map(localization_row);
-    touches.chain(localizations).chain(predicted.poses.iter().map(pose_row)).collect()
+    touches.chain(localizations).chain(predicted.poses.iter().map(|pose| pose_row(pose, turned))).collect()
 }
 
 fn name(angles: Angles) -> &'static str {
@@ -240,7 +260,14 @@ fn localization_row(located: &LocalizationPrediction) -> PredictedRow {
     }
 }
 
-fn pose_row(pose: &PosePrediction) -> PredictedRow {
+fn pose_row(pose: &PosePrediction, turned: bool) -> PredictedRow {
     let tip = pose.tip.coords;
-    PredictedRow::Poses { meas_x_m: tip.x, meas_y_m: tip.y, meas_z_m: tip.z, angles: name(pose.angles) }
+    let turn = turned.then(|| {
+        // Both signs of a quaternion are the same turn.
+        let sign = if pose.turn.w < 0.0 { -1.0 } else { 1.0 };
+        let [meas_qw, meas_qx, meas_qy, meas_qz] =
+            [pose.turn.w, pose.turn.i, pose.turn.j, pose.turn.k].map(|part| sign * part);
+        Turn { meas_qw, meas_qx, meas_qy, meas_qz }
+    });
+    PredictedRow::Poses { meas_x_m: tip.x, meas_y_m: tip.y, meas_z_m: tip.z, turn, angles: name(pose.angles) }
 }

@@ -1,7 +1,7 @@
 //! What effects do to the arm, the tip, the screen and the eyes.
 
 use super::entry::{Act, Is, Turning};
-use super::{Effect, Situation};
+use super::{Effect, Kind, Situation};
 use crate::arm::Deviation;
 use crate::eyes::{EyeSituation, EyesDeviation};
 
@@ -48,8 +48,7 @@ impl Effect {
     fn turn_rad(&self, turn: fn(&Turning<'_>) -> f64, at: &Turning<'_>) -> f64 {
         let situation = at.situation;
         let known = situation.angles_rad.len().min(situation.torques_nm.len());
-        let seen = self.kind.entry().is(Is::SeenByEncoder) && situation.starts_from_encoders();
-        if at.joint >= known || seen { 0.0 } else { turn(at) }
+        if at.joint >= known || situation.encoder_sees(self.kind, at.joint) { 0.0 } else { turn(at) }
     }
 
     /// Part of its full size that it has reached.
@@ -74,9 +73,11 @@ impl Effect {
 }
 
 impl Situation<'_> {
-    /// Whether the prediction already holds what encoders see.
-    fn starts_from_encoders(&self) -> bool {
-        self.row.is_some_and(|row| row.encoder_rad.is_some())
+    /// Whether the angle that the prediction starts from already holds what effects of this kind do to a joint.
+    fn encoder_sees(&self, kind: Kind, j: usize) -> bool {
+        let Some(row) = self.row.filter(|row| row.reads_encoder(j)) else { return false };
+        let entry = kind.entry();
+        entry.is(Is::SeenByEncoder) || entry.is(Is::SeenBehindGear) && row.encoder_behind_gear
     }
 
     pub(super) fn direction_of(&self, j: usize) -> f64 {

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use plumbline_model::robot::CalibratedAt;
 
-use super::entry::{EyeSite, Shape, Site};
+use super::entry::{EyeSite, Is, Shape, Site};
 use super::{Kind, Parameter};
 use crate::arm::Arm;
 use crate::eyes::Eyes;
@@ -34,6 +34,8 @@ pub struct Effect {
     pub(super) joint: Option<usize>,
     /// Two directions across the axis of its joint, own frame.
     pub(crate) across: Option<[Vector3<f64>; 2]>,
+    /// Its joint slides: what is an angle elsewhere is a length.
+    pub(super) slides: bool,
     /// The joint before its own.
     pub(super) partner: Option<String>,
     /// Not one effect but one of this kind at every site, each with its own values: a robot that
@@ -123,6 +125,7 @@ impl Effect {
             reference_s: 0.0,
             joint,
             across: None,
+            slides: false,
             partner: None,
             members: vec![],
         }
@@ -144,6 +147,9 @@ impl Effect {
         if !self.members.is_empty() {
             let count: usize = self.members.iter().map(|member| member.parameters().len()).sum();
             return &self.kind.entry().site.parameters_of_every()[..count];
+        }
+        if self.slides && !self.kind.entry().sliding.is_empty() {
+            return self.kind.entry().sliding;
         }
         match (self.kind.entry().shape, self.shape) {
             (Shape::Growth(parameters), Some(_)) => parameters,
@@ -229,7 +235,11 @@ fn of_arm(kind: Kind, arm: &Arm) -> Vec<Effect> {
             all.push(Effect::new(kind, "", "all joints alike", None));
             all
         }
-        Site::JointOrEvery(_) => and_every(kind, "every joint", joints(kind, arm, 0)),
+        Site::JointOrEvery(_) => {
+            let (slides, turns): (Vec<_>, Vec<_>) =
+                joints(kind, arm, 0).into_iter().partition(|effect| effect.slides);
+            [and_every(kind, "every joint", turns), slides].concat()
+        }
         Site::Link => links(kind, arm),
         Site::LinkOrEvery(_) => and_every(kind, "every link", links(kind, arm)),
         Site::Tip | Site::Contact | Site::WholeArm => one("tip"),
@@ -265,11 +275,17 @@ fn and_every(kind: Kind, whose: &str, mut single: Vec<Effect>) -> Vec<Effect> {
 /// Joints of an arm from one of them on.
 fn joints(kind: Kind, arm: &Arm, first: usize) -> Vec<Effect> {
     (first..arm.len())
+        .filter(|&j| {
+            let coupled = matches!(kind.entry().site, Site::JointAfterAnother);
+            let slides = arm.parts[j].slides || coupled && arm.parts[j - 1].slides;
+            !slides || kind.entry().is(Is::OfSlides)
+        })
         .map(|j| {
             let part = &arm.parts[j];
             let partner = j.checked_sub(1).map(|before| arm.parts[before].joint.clone());
             let across = Some(across(&part.axis));
-            Effect { across, partner, ..Effect::new(kind, &part.joint, &part.title, Some(j)) }
+            let slides = part.slides;
+            Effect { across, slides, partner, ..Effect::new(kind, &part.joint, &part.title, Some(j)) }
         })
         .collect()
 }

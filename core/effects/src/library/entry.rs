@@ -17,6 +17,8 @@ pub(crate) struct Entry {
     pub remedy: &'static str,
     /// Its parameters in their usual size.
     pub parameters: &'static [Parameter],
+    /// The same at a joint that slides, where they are lengths instead of angles; else empty.
+    pub sliding: &'static [Parameter],
     /// Where it sits.
     pub site: Site,
     /// What of it is no matter of degree.
@@ -135,6 +137,10 @@ pub(crate) enum Is {
     Planned,
     /// An encoder sees it, so that a prediction from encoder angles already holds it.
     SeenByEncoder,
+    /// It sits between motor and joint: an encoder behind the gear sees it, one at the motor does not.
+    SeenBehindGear,
+    /// A joint that slides has it, too.
+    OfSlides,
     /// It goes with a load, and so with masses.
     OfLoad,
     /// A robot's description can hold it, as the place of a joint or of the tip.

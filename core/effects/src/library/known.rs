@@ -46,7 +46,7 @@ pub(crate) struct Known {
     pub(crate) only_watched: bool,
     /// Labels of the sets in which the eyes measured, where an eye may have turned from one to the next.
     pub(crate) eye_sets: Vec<String>,
-    /// Some row starts from commanded angles.
+    /// Some row starts from commanded angles, of one joint at least.
     pub(crate) commanded: bool,
     /// Some row has encoders that lag.
     pub(crate) lag: bool,

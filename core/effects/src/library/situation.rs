@@ -1,8 +1,8 @@
 //! What effects depend on: loads, directions, where the finger points.
 
-use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Point3, Vector3};
 
-use crate::arm::{Arm, Frames};
+use crate::arm::{Arm, Frames, Part};
 use crate::observation::Observation;
 
 /// Along the glass per way down, at most: nobody comes in flatter, and joints do not turn quite alike.
@@ -56,19 +56,21 @@ impl<'a> Situation<'a> {
         let moments = arm.gravity_moments_nm(&frames, payload_kg);
         let heavier = arm.gravity_moments_nm(&frames, payload_kg + 1.0);
         let along = |moments: &[Vector3<f64>]| -> Vec<f64> {
-            moments.iter().zip(&frames.axes).map(|(moment, axis)| moment.dot(axis)).collect()
+            // What slides bears forces along its axis, and no torque about it.
+            let about = |part: &Part| if part.slides { 0.0 } else { 1.0 };
+            let all = moments.iter().zip(&frames.axes).zip(&arm.parts);
+            all.map(|((moment, axis), part)| about(part) * moment.dot(axis)).collect()
         };
         let (torques_nm, torques_heavier) = (along(&moments), along(&heavier));
         let sideways_nm = (0..arm.len())
             .map(|j| {
                 let across = moments[j] - frames.axes[j] * torques_nm[j];
                 // A joint gives way across its axis before it turns: the frame at angle zero.
-                let turn = UnitQuaternion::from_axis_angle(&arm.parts[j].axis, angles_rad[j]);
-                turn * (frames.robot_from_joint[j].rotation.inverse() * across)
+                arm.parts[j].turn(angles_rad[j]) * (frames.robot_from_joint[j].rotation.inverse() * across)
             })
             .collect();
         let tip = Point3::from(frames.robot_from_tip.translation.vector);
-        let (sweep, slope) = sweep(&frames.robot_from_joint, &frames.axes, direction, tip, normal);
+        let (sweep, slope) = sweep(arm, &frames, direction, tip, normal);
         let lean_nm = moments.first().map_or(Vector3::zeros(), |m| Vector3::new(m.x, m.y, 0.0));
         Self {
             arm,
@@ -116,16 +118,20 @@ fn roll(arm: &Arm, joints: &[Isometry3<f64>], normal: &Vector3<f64>) -> Vector3<
 /// Where the finger goes along the glass when every joint turns alike: the direction, and with the way along the
 /// glass per way down as its length.
 fn sweep(
-    joints: &[Isometry3<f64>],
-    axes: &[Vector3<f64>],
+    arm: &Arm,
+    frames: &Frames,
     direction: &[f64],
     tip: Point3<f64>,
     normal: &Vector3<f64>,
 ) -> (Vector3<f64>, Vector3<f64>) {
-    let velocity: Vector3<f64> = joints
+    let velocity: Vector3<f64> = frames
+        .robot_from_joint
         .iter()
-        .zip(axes)
+        .zip(&frames.axes)
         .zip(direction)
+        .zip(&arm.parts)
+        .filter(|(_, part)| !part.slides)
+        .map(|(turning, _)| turning)
         .map(|((joint, axis), sign)| axis.cross(&(tip.coords - joint.translation.vector)) * *sign)
         .sum();
     let down = normal.dot(&velocity);

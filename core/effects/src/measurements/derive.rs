@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 
-use super::{Apparatus, Observation, lags};
+use super::{Apparatus, Observation, copies, lags};
 use crate::library::Situation;
 
 /// Less than this is no motion, rad.
@@ -26,6 +26,7 @@ pub(super) fn complete(rows: &mut [Observation], apparatuses: &[Apparatus]) {
         }
         torques(rows, order, apparatuses);
     }
+    copies::complete(rows, apparatuses.len());
     lags::complete(rows, apparatuses);
 }
 

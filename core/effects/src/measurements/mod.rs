@@ -1,6 +1,7 @@
 //! What was measured, row by row, as predictions need it: one list for touches, poses and
 //! localizations of any number of sessions.
 
+mod copies;
 mod derive;
 mod lags;
 mod read;
@@ -13,6 +14,8 @@ use plumbline_model::robot::{DescriptionError, RigError};
 use crate::arm::Arm;
 use crate::eyes::Eyes;
 use crate::library::{Present, Surface};
+
+pub use copies::copies_of_commands;
 
 pub use crate::observation::{Observation, Unit, What};
 
@@ -127,6 +130,21 @@ pub enum MeasurementsError {
         joint: String,
         /// The tip.
         tip: String,
+    },
+    /// A column in the unit of another kind of motion.
+    #[error(
+        "{session}: joint {joint} {moves} in the robot's description: log where it stood in {column}, or give the rig \
+         that it was recorded with"
+    )]
+    OtherMotion {
+        /// The session.
+        session: String,
+        /// The joint.
+        joint: String,
+        /// "turns" or "slides".
+        moves: &'static str,
+        /// The column that such a joint has.
+        column: String,
     },
     /// The rig was only measured and has no such part.
     #[error("{session}: {error}")]

@@ -6,11 +6,11 @@ use nalgebra::Point3;
 use plumbline_model::Session;
 use plumbline_model::robot::servo::TICK_RAD;
 use plumbline_model::robot::{DescriptionError, Rig, RigPart};
-use plumbline_model::session::{EncoderSide, LocalizationRow, PoseRow, TouchRow, TouchTable};
+use plumbline_model::session::{EncoderSide, LocalizationRow, PoseRow, PoseTable, TouchRow, TouchTable};
 
 use super::derive;
 use super::{Apparatus, LeftOut, Marker, Measurements, MeasurementsError, Observation, What};
-use crate::arm::Arm;
+use crate::arm::{Arm, Part};
 use crate::eyes::Eyes;
 use crate::library::Surface;
 
@@ -43,6 +43,20 @@ impl Measurements {
             left_out: reader.left_out,
             present: vec![],
         })
+    }
+}
+
+/// A joint that slides is logged in meters, one that turns in radians.
+fn units_of_columns(title: &str, arm: &Arm, table: &PoseTable) -> Result<(), MeasurementsError> {
+    let in_other = |part: &&Part| table.slides(&part.joint).is_some_and(|slides| slides != part.slides);
+    match arm.parts.iter().find(in_other) {
+        None => Ok(()),
+        Some(part) => Err(MeasurementsError::OtherMotion {
+            session: title.to_owned(),
+            joint: part.joint.clone(),
+            moves: if part.slides { "slides" } else { "turns" },
+            column: part.column("cmd"),
+        }),
     }
 }
 
@@ -114,7 +128,10 @@ impl Reader<'_> {
         let mut columns = Columns { order: vec![] };
         if moved {
             let chain = session.manifest.chain.as_ref().ok_or_else(|| missing("chain"))?;
-            let arm = Arm::of_rig(self.rig, &chain.tip).map_err(misfit)?;
+            let arm = Arm::logged(self.rig, &chain.tip, &chain.joints).map_err(misfit)?;
+            if let Some(table) = &session.poses {
+                units_of_columns(title, &arm, table)?;
+            }
             let place = |joint: &String| {
                 let not_logged = || MeasurementsError::NotLogged {
                     session: title.to_owned(),
@@ -124,7 +141,7 @@ impl Reader<'_> {
                 chain.joints.iter().position(|name| name == joint).ok_or_else(not_logged)
             };
             if let Some((joint, kind)) =
-                chain.joints.iter().find_map(|name| Some((name, self.rig.description.held_kind(name)?)))
+                chain.joints.iter().find_map(|name| Some((name, self.rig.description.unmoved_kind(name)?)))
             {
                 let (joint, kind) = (joint.clone(), kind.to_owned());
                 return Err(misfit(DescriptionError::Kind { joint, kind }));
@@ -314,7 +331,9 @@ impl Reader<'_> {
             return Ok(known + 1);
         }
         let whole = apparatus.arm.as_ref().ok_or("no arm")?;
-        let arm = Arm::of_rig(self.rig, name).map_err(|error| error.to_string())?;
+        let slides = whole.parts.iter().filter(|part| part.slides).map(|part| part.joint.clone());
+        let slides: Vec<String> = slides.collect();
+        let arm = Arm::logged(self.rig, name, &slides).map_err(|error| error.to_string())?;
         let mut joints = arm.parts.iter().zip(&whole.parts);
         if arm.len() > whole.len() || joints.any(|(own, of_whole)| own.joint != of_whole.joint) {
             return Err(format!(
@@ -345,7 +364,7 @@ impl Reader<'_> {
             .map(|part| {
                 let logged = head.iter().position(|name| *name == part.joint);
                 let logged = logged.and_then(|place| seen.head_rad.get(place).copied().flatten());
-                logged.unwrap_or(home[part.index])
+                logged.or(part.index.map(|index| home[index])).unwrap_or_default()
             })
             .collect();
         let (what, measured) = match (seen.left, seen.right, seen.estimate) {

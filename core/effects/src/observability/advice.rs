@@ -147,8 +147,8 @@ impl Scene<'_> {
         }
         let reached = (goal - self.arm.tip_m(angles.as_slice(), &none)).norm() < REACHED_M;
         let inside = self.arm.parts.iter().zip(angles.iter()).all(|(part, angle_rad)| {
-            let limits = self.rig.limits(part.index);
-            (limits.lower_rad..=limits.upper_rad).contains(angle_rad)
+            let limits = part.index.map(|index| self.rig.limits(index));
+            limits.is_none_or(|limits| (limits.lower_rad..=limits.upper_rad).contains(angle_rad))
         });
         (reached && inside).then(|| angles.as_slice().to_vec())
     }

@@ -133,9 +133,19 @@ pub struct PlacedScreen {
 pub struct PlacedExternal {
     /// The session it measured.
     pub session: String,
+    /// Label of its frame, where sessions share one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frame: Option<String>,
     /// Takes points of the robot into its frame.
     #[serde(with = "isometry_part")]
     pub external_from_robot: Isometry3<f64>,
+    /// Where the marker sat at the tip's frame, which was mounted anew for that session; else nothing is moved.
+    #[serde(default, with = "isometry_part", skip_serializing_if = "is_nothing")]
+    pub tip_from_marker: Isometry3<f64>,
+}
+
+fn is_nothing(motion: &Isometry3<f64>) -> bool {
+    *motion == Isometry3::identity()
 }
 
 /// What is to be added.
@@ -346,7 +356,12 @@ impl Contents {
                     rig.name
                 )
             };
-            let arm = effect.tip.as_deref().map(|tip| Arm::of_rig(rig, tip)).transpose().map_err(misfit)?;
+            let arm = effect
+                .tip
+                .as_deref()
+                .map(|tip| Arm::logged(rig, tip, &rig.description.slides()))
+                .transpose()
+                .map_err(misfit)?;
             let eyes = Eyes::of_rig(rig).ok();
             let Some(known) =
                 Effect::find(&effect.id, &effect.site, effect.shape, arm.as_ref(), eyes.as_ref())
@@ -404,8 +419,9 @@ impl Contents {
         }
         for placed in &self.externals {
             let at_m = placed.external_from_robot.translation.vector;
+            let of_marker_m = placed.tip_from_marker.translation.vector;
             plausible::EXTERNAL_M
-                .check_all(at_m.iter())
+                .check_all(at_m.iter().chain(of_marker_m.iter()))
                 .map_err(|what| format!("the frame of the session {} cannot be: {what}", placed.session))?;
         }
         Ok(())

@@ -3,10 +3,10 @@
 use nalgebra::{DMatrix, Isometry3};
 use plumbline_model::predict::{PredictError, SessionPrediction, predict_session};
 use plumbline_model::robot::Rig;
-use plumbline_model::session::{LocalizationTable, PoseTable, Screen, Session, TouchTable, Touchscreen};
+use plumbline_model::session::{LocalizationTable, Screen, Session, TouchTable, Touchscreen};
 use plumbline_model::{Pixel, Point};
 
-use super::{PlacedScreen, RigModel};
+use super::{PlacedExternal, PlacedScreen, RigModel};
 use crate::arm::Arm;
 use crate::eyes::Eyes;
 use crate::forward::Assumed;
@@ -46,9 +46,11 @@ pub fn predict_session_with(
     let effects = model.present(tip, apparatus.arm.as_ref(), apparatus.eyes.as_ref());
     let on_screen =
         Assumed { effects: effects.clone(), placements: vec![Isometry3::identity()], ..Assumed::default() };
+    let external = model.external(session.manifest.pose_setup().external_frame.as_deref());
     let outside = Assumed {
         effects: in_the_air(&effects),
-        placements: vec![model.external().copied().unwrap_or_default()],
+        placements: vec![external.map(|placed| placed.external_from_robot).unwrap_or_default()],
+        mounts: vec![external.map(|placed| placed.tip_from_marker).unwrap_or_default()],
         ..Assumed::default()
     };
     let has_pixels = session.localizations.as_ref().is_some_and(|table| table.table().has("left_u_px"));
@@ -64,8 +66,11 @@ pub fn predict_session_with(
                 touch.above_glass_m = at[2];
             }
             What::Pose | What::OrientedPose => {
-                let Some(at) = measurements.predict(row, &outside) else { continue };
-                prediction.poses[row.row].tip = Point::new(at[0], at[1], at[2]);
+                let Some(at) = measurements.external_from_tip(row, &outside) else { continue };
+                let pose = &mut prediction.poses[row.row];
+                let [x, y, z] = at.translation.vector.into();
+                pose.tip = Point::new(x, y, z);
+                pose.turn = at.rotation;
             }
             What::Place | What::EyePoints => {
                 let Some(eyes) = &measurements.apparatuses[0].eyes else { continue };
@@ -101,9 +106,16 @@ impl RigModel {
         same.or_else(other)
     }
 
-    /// Takes points of the robot into the external frame that was placed last.
-    pub fn external(&self) -> Option<&Isometry3<f64>> {
-        self.contents.externals.last().map(|placed| &placed.external_from_robot)
+    /// The external frame of this label that was placed last; without a label, or where no frame that the model
+    /// has is labeled, the last one of all.
+    pub fn external(&self, frame: Option<&str>) -> Option<&PlacedExternal> {
+        let placed = &self.contents.externals;
+        match frame {
+            Some(label) if placed.iter().any(|one| one.frame.is_some()) => {
+                placed.iter().rev().find(|one| one.frame.as_deref() == Some(label))
+            }
+            _ => placed.last(),
+        }
     }
 
     /// Effects that an arm which ends in `tip`, or eyes, have. Those of the other arm are left out, and
@@ -206,7 +218,7 @@ fn filled(session: &Session, nominal: &SessionPrediction) -> Session {
                 row
             })
             .collect();
-        filled.poses = Some(PoseTable::from_rows(table.joints().to_vec(), &rows));
+        filled.poses = Some(table.with_rows(&rows));
     }
     if let Some(table) = &session.localizations {
         let rows: Vec<_> = table

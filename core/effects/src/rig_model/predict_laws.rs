@@ -156,6 +156,46 @@ fn effects_follow_the_columns_of_their_row() {
     assert_eq!(off(effect("joint-sag", "r_elbow_y", &[0.2])), [true; 4]);
 }
 
+fn placed(session: &str, frame: Option<&str>, external_from_robot: Isometry3<f64>) -> PlacedExternal {
+    PlacedExternal {
+        session: session.to_owned(),
+        frame: frame.map(str::to_owned),
+        external_from_robot,
+        tip_from_marker: Isometry3::identity(),
+    }
+}
+
+#[test]
+fn poses_are_in_the_frame_of_their_label_and_of_the_marker_that_was_mounted_anew() {
+    let rig = nico();
+    let (hall, yard) = (Isometry3::translation(1.0, 0.0, 0.0), Isometry3::translation(0.0, 5.0, 0.0));
+    let mount = Isometry3::new(Vector3::new(0.01, 0.02, -0.03), Vector3::new(0.0, 0.0, 0.4));
+    let mut model = with(&rig, vec![effect("joint-zero", "r_elbow_y", &[0.04])]);
+    let in_hall = PlacedExternal { tip_from_marker: mount, ..placed("first", Some("hall"), hall) };
+    model.contents.externals = vec![in_hall, placed("second", Some("yard"), yard)];
+    let of = |keys: &str| {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let mut session = session(&rig);
+        (session.touches, session.localizations) = (None, None);
+        session.write(folder.path()).expect("written");
+        let file = folder.path().join("session.toml");
+        let text = std::fs::read_to_string(&file).expect("readable");
+        std::fs::write(&file, text.replace("[chain]\n", keys)).expect("written");
+        let read = Session::read(folder.path()).expect("a session");
+        predict_session_with(&read, &rig, None, &model).expect("predicted").poses
+    };
+    let plain = of("[external]\nframe = \"yard\"\n[chain]\n");
+    let anew = of("[external]\nframe = \"hall\"\n[chain]\ntip_place = \"unknown\"\n");
+    for (plain, anew) in plain.iter().zip(&anew) {
+        let tip = yard.inverse() * plain.tip.coords;
+        let robot_from_tip = Isometry3::from_parts(tip.coords.into(), plain.turn);
+        let marker = hall * robot_from_tip * mount;
+        assert!((marker.translation.vector - anew.tip.coords.coords).norm() < 1e-9);
+        assert!(marker.rotation.angle_to(&anew.turn) < 1e-9);
+    }
+    assert!(model.external(Some("roof")).is_none(), "nobody placed that frame");
+}
+
 #[test]
 fn the_models_screen_and_external_frame_are_used() {
     let rig = nico();
@@ -164,8 +204,7 @@ fn the_models_screen_and_external_frame_are_used() {
     let mut model = with(&rig, vec![effect("joint-zero", "r_elbow_y", &[0.04])]);
     let without = predict_session_with(&session, &rig, None, &model).expect("predicted");
     model.contents.screens = vec![PlacedScreen::moved("morning", &rig.touchscreen, &motion)];
-    model.contents.externals =
-        vec![PlacedExternal { session: "morning".to_owned(), external_from_robot: motion }];
+    model.contents.externals = vec![placed("morning", None, motion)];
     let placed = predict_session_with(&session, &rig, None, &model).expect("predicted");
     // The robot moved against the screen, or the screen the other way: the tip is at the same place.
     let lies = model.screen(&rig.touchscreen).expect("placed");

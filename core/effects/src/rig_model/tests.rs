@@ -62,7 +62,12 @@ fn elbow(rig: &Rig) -> RigModel {
     let mut model = RigModel::nominal(rig);
     let motion = Isometry3::new(Vector3::new(0.01, -0.002, 0.003), Vector3::new(0.01, 0.0, 0.1));
     let screens = vec![PlacedScreen::moved("morning", &rig.touchscreen, &motion)];
-    let externals = vec![PlacedExternal { session: "tracker".to_owned(), external_from_robot: motion }];
+    let externals = vec![PlacedExternal {
+        session: "tracker".to_owned(),
+        frame: Some("hall".to_owned()),
+        external_from_robot: motion,
+        tip_from_marker: motion.inverse(),
+    }];
     let zero = ModelEffect {
         covariance: vec![1e-6],
         parameters: vec![ReportedParameter {

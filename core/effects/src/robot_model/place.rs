@@ -154,7 +154,13 @@ impl RobotModel {
 
     fn row(&self, posture: &Posture, seen: &SeenUnder) -> Observation {
         Observation {
-            neck_rad: self.eyes.neck.parts.iter().map(|part| posture[part.index]).collect(),
+            neck_rad: self
+                .eyes
+                .neck
+                .parts
+                .iter()
+                .map(|part| part.index.map_or(0.0, |index| posture[index]))
+                .collect(),
             t_secs: seen.t_secs,
             background_m: seen.background_m,
             ..Observation::imagined(What::Place)

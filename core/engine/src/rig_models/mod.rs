@@ -122,11 +122,18 @@ pub fn with(
     }
     let tip = sessions.iter().find_map(|session| session.manifest.chain.as_ref()).map(|chain| &chain.tip);
     let (mut screens, mut externals) = (vec![], vec![]);
-    for ((name, session), placement) in finding.sessions.iter().zip(sessions).zip(&finding.placements) {
+    for (i, ((name, session), placement)) in
+        finding.sessions.iter().zip(sessions).zip(&finding.placements).enumerate()
+    {
         let screen = session.manifest.touchscreen.as_ref().filter(|_| session.touches.is_some());
         screens.extend(screen.map(|screen| PlacedScreen::moved(name, screen, placement)));
         if session.poses.is_some() {
-            externals.push(PlacedExternal { session: name.clone(), external_from_robot: *placement });
+            externals.push(PlacedExternal {
+                session: name.clone(),
+                frame: session.manifest.pose_setup().external_frame,
+                external_from_robot: *placement,
+                tip_from_marker: finding.mounts.get(i).copied().unwrap_or_default(),
+            });
         }
     }
     let is_of_eyes = |effect: &&NamedEffect| Kind::of_id(&effect.id).is_some_and(Kind::is_of_eyes);

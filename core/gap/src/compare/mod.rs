@@ -4,6 +4,7 @@
 mod displacement;
 mod drift;
 mod frames;
+mod instrument;
 mod lack_of_fit;
 mod neighbors;
 mod noise;
@@ -122,6 +123,7 @@ pub(crate) fn compare(
     }
     context.checkpoint()?;
     context.report(0.4, "measuring the noise");
+    instrument::check(measurements, &residuals)?;
     let noise = noise::floor_of(measurements, &residuals);
     warn_of_noise(&noise.floor, &mut warnings);
     let covariates = Covariates::of(measurements);

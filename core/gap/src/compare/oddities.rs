@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use plumbline_effects::measurements::{Measurements, Observation, What};
+use plumbline_effects::measurements::{Measurements, Observation, What, copies_of_commands};
 
 use crate::error::GapError;
 
@@ -11,8 +11,6 @@ use crate::error::GapError;
 const STILL_RAD: f64 = 2e-3;
 /// A column that moves the prediction by less is not missed when it is all zeros, m.
 const MATTERS_M: f64 = 0.01;
-/// Fewer rows with command and encoder may be alike by chance.
-const FEWEST_LOGGED: usize = 6;
 /// A share of rows at the very same extreme that chance does not explain.
 const CLIPPED_SHARE: f64 = 0.1;
 
@@ -32,7 +30,7 @@ pub fn stop_at_dead_columns(measurements: &Measurements) -> Result<(), GapError>
             let encoder = of(|row| row.encoder_rad.as_ref());
             for (prefix, own, other) in [("enc", encoder, commanded), ("cmd", commanded, encoder)] {
                 if own == Some((0.0, 0.0)) && other.is_some_and(|(low, high)| high - low > 0.05) {
-                    return Err(dead(format!("{prefix}_{}_rad", part.joint)));
+                    return Err(dead(part.column(prefix)));
                 }
             }
         }
@@ -86,7 +84,7 @@ pub fn warnings(measurements: &Measurements) -> Vec<String> {
         zeros(&rows, &mut said);
         clipped(&rows, &mut said);
         duplicates(&rows, &mut said);
-        copies_of_commands(&rows, &mut said);
+        copied_encoders(&rows, &mut said);
         behind_gears(&rows, &mut said);
         super::poses::in_one_plane(measurements, &rows, &mut said);
         backwards(&rows, &mut said);
@@ -220,36 +218,23 @@ fn duplicates(rows: &[&Observation], said: &mut Vec<String>) {
 }
 
 /// No encoder reads exactly what its joint was sent to, row after row.
-fn copies_of_commands(rows: &[&Observation], said: &mut Vec<String>) {
-    let both: Vec<(&Vec<f64>, &Vec<f64>)> = rows
-        .iter()
-        .filter_map(|row| Some((row.commanded_rad.as_ref()?, row.encoder_rad.as_ref()?)))
-        .collect();
-    if both.len() < FEWEST_LOGGED {
-        return;
-    }
-    let joints = both.iter().map(|(commanded, _)| commanded.len()).min().unwrap_or(0);
-    let is_copied = |j: &usize| {
-        let moved = range(both.iter().map(|(commanded, _)| commanded[*j]));
-        let alike =
-            |(commanded, encoder): &(&Vec<f64>, &Vec<f64>)| commanded[*j].to_bits() == encoder[*j].to_bits();
-        moved.is_some_and(|(low, high)| high - low > STILL_RAD) && both.iter().all(alike)
-    };
-    let copied = (0..joints).filter(is_copied).count();
+fn copied_encoders(rows: &[&Observation], said: &mut Vec<String>) {
+    let copied = copies_of_commands(rows).into_iter().filter(|copied| *copied).count();
     if copied > 0 {
         said.push(format!(
             "{copied} of the enc_…_rad columns are copies of the commands: what servos do between command and encoder \
-             cannot be seen in them. Log the encoders, or leave these columns out"
+             cannot be seen in them, and they are taken for commands. Log the encoders, or leave these columns out"
         ));
     }
 }
 
-/// The search knows encoders at the motors only.
+/// What sits between motor and joint is in such readings already.
 fn behind_gears(rows: &[&Observation], said: &mut Vec<String>) {
     if rows.iter().any(|row| row.encoder_behind_gear && row.encoder_rad.is_some()) {
         said.push(
-            "encoders = \"joint\" is read but not used: the search takes encoders to sit at the motors. Play and what \
-             gives way between motor and joint stand in such readings already: do not add them from these rows"
+            "encoders = \"joint\": the encoders are taken to sit behind the gears. Play, teeth, horns that slip and \
+             cables that pull stand in their readings, so nothing of it is looked for beside them: it shows only between \
+             command and encoder"
                 .to_owned(),
         );
     }

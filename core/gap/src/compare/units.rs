@@ -74,6 +74,7 @@ fn angles_by_size(
 ) -> Result<(), GapError> {
     let Some(arm) = &measurements.apparatuses[session].arm else { return Ok(()) };
     for (j, part) in arm.parts.iter().enumerate() {
+        let (unit, factor) = if part.slides { ("millimeters", 1000.0) } else { ("degrees", DEGREES) };
         for (prefix, is_encoder) in [("cmd", false), ("enc", true)] {
             let angles: Vec<f64> = rows
                 .iter()
@@ -84,27 +85,15 @@ fn angles_by_size(
                 .collect();
             let beyond = angles.iter().filter(|angle| **angle > FARTHEST_JOINT_RAD).count();
             if beyond > angles.len() / 10 {
-                return Err(wrong(
-                    measurements,
-                    session,
-                    format!("{prefix}_{}_rad", part.joint),
-                    "degrees",
-                    DEGREES,
-                ));
+                return Err(wrong(measurements, session, part.column(prefix), unit, factor));
             }
         }
         let commanded = spread(rows, |row| row.commanded_rad.as_ref().map(|angles| angles[j]));
         let encoder = spread(rows, |row| row.encoder_rad.as_ref().map(|angles| angles[j]));
         let (Some(commanded), Some(encoder)) = (commanded, encoder) else { continue };
         for (column, ratio) in [("enc", encoder / commanded), ("cmd", commanded / encoder)] {
-            if near(ratio, DEGREES) && commanded.max(encoder) > 0.5 {
-                return Err(wrong(
-                    measurements,
-                    session,
-                    format!("{column}_{}_rad", part.joint),
-                    "degrees",
-                    DEGREES,
-                ));
+            if near(ratio, factor) && commanded.max(encoder) > 0.5 {
+                return Err(wrong(measurements, session, part.column(column), unit, factor));
             }
         }
     }
@@ -260,7 +249,7 @@ fn angles_by_fit(
         return turns::check(measurements, session, context);
     }
     for (j, part) in arm.parts.iter().enumerate() {
-        for factor in [DEGREES, 1.0 / DEGREES] {
+        for factor in if part.slides { [1000.0, 100.0] } else { [DEGREES, 1.0 / DEGREES] } {
             let mut other = only.clone();
             for row in &mut other.rows {
                 for angles in [&mut row.commanded_rad, &mut row.encoder_rad].into_iter().flatten() {
@@ -271,14 +260,12 @@ fn angles_by_fit(
             if largest < FARTHEST_JOINT_RAD && CLEARLY * typical_miss(&other, context)? < off {
                 let prefix =
                     if only.rows.iter().any(|row| row.encoder_rad.is_some()) { "enc" } else { "cmd" };
-                let seems = if factor > 1.0 { "degrees" } else { "converted to radians twice" };
-                return Err(wrong(
-                    measurements,
-                    session,
-                    format!("{prefix}_{}_rad", part.joint),
-                    seems,
-                    factor,
-                ));
+                let seems = match length_of(factor).filter(|_| part.slides) {
+                    Some((unit, _)) => unit,
+                    None if factor > 1.0 => "degrees",
+                    None => "converted to radians twice",
+                };
+                return Err(wrong(measurements, session, part.column(prefix), seems, factor));
             }
         }
     }

@@ -25,7 +25,7 @@ use crate::finding::NamedEffect;
 use crate::floor::Floor;
 use cells::Sides;
 use lag::{FEWEST_CELLS, Lag, Slope};
-use name::{Size, named, named_mass, or_friction};
+use name::{Size, named, named_mass, or_friction, or_play};
 use size::Levers;
 
 /// A slope counts from so many standard deviations on.
@@ -77,6 +77,8 @@ struct Servos<'a> {
     levers: Levers<'a>,
     /// Length of one floor on the table, m.
     floor_m: f64,
+    /// Encoders sit behind the gears.
+    behind_gear: bool,
 }
 
 /// Servos that give way or stick more than the others, and masses that are other ones, the largest first;
@@ -116,7 +118,8 @@ impl<'a> Servos<'a> {
         }
         let alone: Vec<Option<Lag>> = (0..arm.len()).map(|j| lag::lag(&cells, j, sides.both)).collect();
         let together = masses::fit(&cells, &alone);
-        let joints = alone.into_iter().enumerate().filter_map(|(j, lag)| {
+        let reads = |j: usize| rows.iter().any(|row| row.reads_encoder(j));
+        let joints = alone.into_iter().enumerate().filter(|(j, _)| reads(*j)).filter_map(|(j, lag)| {
             let lag = lag?;
             let of = |slopes: &[Option<Slope>]| slopes.get(j).copied().flatten();
             let gives = together.as_ref().and_then(|fit| of(&fit.gives)).or(lag.gives);
@@ -130,7 +133,8 @@ impl<'a> Servos<'a> {
         let placed = floor.kinds.iter().filter(|kind| kind.what.is_placed());
         let floor_m = placed.map(|kind| kind.sd[0].hypot(kind.sd[1])).fold(0.0, f64::max);
         let masses = together.map_or(vec![], |fit| fit.masses);
-        Some(Self { arm, sides, joints, masses, levers, floor_m })
+        let behind_gear = rows.iter().any(|row| row.encoder_behind_gear);
+        Some(Self { arm, sides, joints, masses, levers, floor_m, behind_gear })
     }
 
     /// What turns of one joint do.
@@ -224,7 +228,9 @@ impl<'a> Servos<'a> {
                     -0.5 * slope.value * row.direction.get(j).copied().unwrap_or_default()
                 };
                 let size = self.size(j, back);
-                (size.sigmas > SMALLEST).then(|| named(self.arm, Kind::Stiction, j, slope, &size)).flatten()
+                let found =
+                    named(self.arm, Kind::Stiction, j, slope, &size).filter(|_| size.sigmas > SMALLEST)?;
+                if self.behind_gear { or_play(self.arm, j, found) } else { Some(found) }
             })
             .collect()
     }

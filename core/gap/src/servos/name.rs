@@ -26,9 +26,31 @@ pub(super) fn named(arm: &Arm, kind: Kind, joint: usize, slope: Slope, size: &Si
     Some(of_effect(&effect, slope, size, PROBABILITY))
 }
 
-/// The same where friction could do as much: both are in its class, with equal shares.
-pub(super) fn or_friction(arm: &Arm, joint: usize, mut found: NamedEffect) -> Option<NamedEffect> {
-    let other = Effect::find(Kind::Stiction.id(), &arm.parts[joint].joint, None, Some(arm), None)?;
+/// The same where friction could do as much.
+pub(super) fn or_friction(arm: &Arm, joint: usize, found: NamedEffect) -> Option<NamedEffect> {
+    or_other(arm, joint, found, Kind::Stiction, "approach from the other side, or repeat with a known weight")
+}
+
+/// The same where play could do as much: an encoder behind the gear stays behind by both.
+pub(super) fn or_play(arm: &Arm, joint: usize, found: NamedEffect) -> Option<NamedEffect> {
+    or_other(
+        arm,
+        joint,
+        found,
+        Kind::Backlash,
+        "log the encoder of the motor too, or feel the joint's play by hand",
+    )
+}
+
+/// The same where an effect of another kind could do as much: both are in its class, with equal shares.
+fn or_other(
+    arm: &Arm,
+    joint: usize,
+    mut found: NamedEffect,
+    kind: Kind,
+    split_by: &str,
+) -> Option<NamedEffect> {
+    let other = Effect::find(kind.id(), &arm.parts[joint].joint, None, Some(arm), None)?;
     found.probability *= 0.5;
     found.class.iter_mut().for_each(|member| member.probability = 0.5);
     found.class.push(ClassMember {
@@ -37,7 +59,7 @@ pub(super) fn or_friction(arm: &Arm, joint: usize, mut found: NamedEffect) -> Op
         title: other.title.clone(),
         probability: 0.5,
     });
-    found.split_by = Some("approach from the other side, or repeat with a known weight".to_owned());
+    found.split_by = Some(split_by.to_owned());
     Some(found)
 }
 

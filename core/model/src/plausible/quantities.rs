@@ -67,6 +67,9 @@ quantities! {
     /// Angle of a joint.
     JOINT_ANGLE_RAD = "a joint angle", "rad", -13.0 ..= 13.0, "no joint of an arm turns more than twice around",
         &[DEGREES];
+    /// Where a joint stands that slides.
+    SLIDE_M = "a place of a joint that slides", "m", -5.0 ..= 5.0, "no such joint of an arm reaches farther",
+        LENGTHS;
     /// A limit of a joint.
     JOINT_LIMIT_RAD = "a limit of a joint", "rad", -1000.0 ..= 1000.0, "joints of arms do not turn that often",
         &[];

@@ -8,6 +8,8 @@ mod tests;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
+use nalgebra::UnitQuaternion;
+
 use crate::frame::{Point, Robot, Tip};
 use crate::pixel::{Pixel, Raw};
 use crate::robot::{Chain, DescriptionError, JointIndex, Posture, Rig};
@@ -67,6 +69,8 @@ pub struct PosePrediction {
     /// The frame that the row names, else the chain's tip, in the frame of the robot. The external frame of the
     /// measurement need not be the same one.
     pub tip: Point<Robot>,
+    /// How it should have been turned, same frame.
+    pub turn: UnitQuaternion<f64>,
     /// From which angles.
     pub angles: Angles,
 }
@@ -180,7 +184,8 @@ fn touches(
         return Err(PredictError::Screen);
     }
     let predict = |(i, row): (usize, crate::session::TouchRow)| {
-        let (tip, angles) = arm.tip("touches.csv", i + 1, &row.encoder_rad, &row.commanded_rad)?;
+        let (robot_from_tip, angles) = arm.tip("touches.csv", i + 1, &row.encoder_rad, &row.commanded_rad)?;
+        let tip = robot_from_tip * Point::<Tip>::new(0.0, 0.0, 0.0);
         let screen = screen.raised(row.screen_height_m.unwrap_or(0.0));
         Ok(TouchPrediction { touch: screen.pixel_at(tip), above_glass_m: screen.height_above_m(tip), angles })
     };
@@ -201,8 +206,9 @@ fn poses(table: &PoseTable, rig: &Rig, logged: &SessionChain) -> Result<Vec<Pose
     }
     let predict = |(i, row): (usize, crate::session::PoseRow)| {
         let arm = row.tip.as_ref().and_then(|name| others.get(name)).unwrap_or(&of_chain);
-        let (tip, angles) = arm.tip("poses.csv", i + 1, &row.encoder_rad, &row.commanded_rad)?;
-        Ok(PosePrediction { tip, angles })
+        let (robot_from_tip, angles) = arm.tip("poses.csv", i + 1, &row.encoder_rad, &row.commanded_rad)?;
+        let tip = robot_from_tip * Point::<Tip>::new(0.0, 0.0, 0.0);
+        Ok(PosePrediction { tip, turn: robot_from_tip.isometry.rotation, angles })
     };
     table.rows().enumerate().map(predict).collect()
 }
@@ -252,9 +258,9 @@ struct Arm {
 
 impl Arm {
     fn of(rig: &Rig, logged: &SessionChain) -> Result<Self, PredictError> {
-        let chain = rig.chain(&logged.tip)?;
+        let chain = Chain::logged(&rig.description, &logged.tip, &rig.home(), &logged.joints)?;
         for joint in &logged.joints {
-            if let Some(kind) = rig.description.held_kind(joint) {
+            if let Some(kind) = rig.description.unmoved_kind(joint) {
                 let (joint, kind) = (joint.clone(), kind.to_owned());
                 return Err(DescriptionError::Kind { joint, kind }.into());
             }
@@ -273,14 +279,11 @@ impl Arm {
         row: usize,
         encoder_rad: &[Option<f64>],
         commanded_rad: &[Option<f64>],
-    ) -> Result<(Point<Robot>, Angles), PredictError> {
+    ) -> Result<(Pose<Robot, Tip>, Angles), PredictError> {
         let of = |logged: &[Option<f64>]| -> Vec<Option<f64>> {
             self.order.iter().map(|place| logged.get(*place).copied().flatten()).collect()
         };
-        let place = |angles_rad: Vec<f64>| {
-            let robot_from_tip: Pose<Robot, Tip> = self.chain.robot_from_tip(&angles_rad);
-            robot_from_tip * Point::<Tip>::new(0.0, 0.0, 0.0)
-        };
+        let place = |angles_rad: Vec<f64>| self.chain.robot_from_tip(&angles_rad);
         if let Some(angles_rad) = of(encoder_rad).into_iter().collect() {
             return Ok((place(angles_rad), Angles::Encoder));
         }

@@ -25,6 +25,19 @@ pub struct Chain {
 struct Segment {
     before: Isometry3<f64>,
     axis: Unit<Vector3<f64>>,
+    /// Moves along its axis instead of about it.
+    slides: bool,
+}
+
+impl Segment {
+    /// From the joint at zero to the joint where it stands, rad or m.
+    fn motion(&self, at: f64) -> Isometry3<f64> {
+        if self.slides {
+            Translation3::from(self.axis.into_inner() * at).into()
+        } else {
+            turn(&self.axis, at)
+        }
+    }
 }
 
 impl Chain {
@@ -34,6 +47,20 @@ impl Chain {
     /// # Errors
     /// When there is no such link.
     pub fn to(description: &Description, tip: &str, others: &Posture) -> Result<Self, DescriptionError> {
+        Self::logged(description, tip, others, &[])
+    }
+
+    /// The same with those of these joints that slide ([`Description::slide_axis`]) among its joints, for rows that
+    /// say where they stood, m. Only [`Self::names`] and [`Self::robot_from_tip`] know them.
+    ///
+    /// # Errors
+    /// When there is no such link.
+    pub fn logged(
+        description: &Description,
+        tip: &str,
+        others: &Posture,
+        logged: &[String],
+    ) -> Result<Self, DescriptionError> {
         let mut path = vec![];
         let mut link = description.find_link(tip)?;
         while let Some(joint) = description.joint_above(link) {
@@ -52,13 +79,22 @@ impl Chain {
             match &joint.kind {
                 JointKind::Revolute { axis, limits, index } => {
                     let before = std::mem::replace(&mut chain.last, Isometry3::identity());
-                    chain.segments.push(Segment { before: before * joint.parent_from_joint, axis: *axis });
+                    let before = before * joint.parent_from_joint;
+                    chain.segments.push(Segment { before, axis: *axis, slides: false });
                     chain.joints.push(*index);
                     chain.names.push(joint.name.clone());
                     chain.limits.push(*limits);
                 }
                 JointKind::Fixed | JointKind::Coupled { .. } => {
-                    chain.last *= joint.parent_from_child(others);
+                    let slide = description.slide_axis(&joint.name).filter(|_| logged.contains(&joint.name));
+                    if let Some(axis) = slide {
+                        let before = std::mem::replace(&mut chain.last, Isometry3::identity());
+                        let before = before * joint.parent_from_joint;
+                        chain.segments.push(Segment { before, axis, slides: true });
+                        chain.names.push(joint.name.clone());
+                    } else {
+                        chain.last *= joint.parent_from_child(others);
+                    }
                 }
             }
         }
@@ -114,10 +150,10 @@ impl Chain {
 
     /// Place of the tip; one angle (rad) per joint of the chain.
     pub fn robot_from_tip(&self, angles_rad: &[f64]) -> Pose<Robot, Tip> {
-        debug_assert_eq!(angles_rad.len(), self.len());
+        debug_assert_eq!(angles_rad.len(), self.segments.len());
         let mut place = Isometry3::identity();
         for (segment, angle_rad) in self.segments.iter().zip(angles_rad) {
-            place = place * segment.before * turn(&segment.axis, *angle_rad);
+            place = place * segment.before * segment.motion(*angle_rad);
         }
         Pose::new(place * self.last)
     }

@@ -26,6 +26,8 @@ pub struct Description {
     /// Joints that move in a way that is not known, held at zero, with the kind of their motion;
     /// only where a description was read leniently.
     pub(super) held: Vec<(String, String)>,
+    /// Those of them that slide, with the direction, axes of the joint.
+    pub(super) slides: Vec<(String, Unit<Vector3<f64>>)>,
 }
 
 /// A rigid part.
@@ -269,6 +271,7 @@ impl Description {
             movable: (0..joints.len()).collect(),
             joints,
             held: vec![],
+            slides: vec![],
         }
     }
 
@@ -286,6 +289,22 @@ impl Description {
     /// (only of robots that are only measured).
     pub fn held_kind(&self, joint: &str) -> Option<&str> {
         self.held.iter().find(|(name, _)| name == joint).map(|(_, kind)| kind.as_str())
+    }
+
+    /// The same of joints that no row of a session can move: what slides is moved by what was logged.
+    pub fn unmoved_kind(&self, joint: &str) -> Option<&str> {
+        self.held_kind(joint).filter(|_| self.slide_axis(joint).is_none())
+    }
+
+    /// Along which direction, axes of the joint, a joint that is held slides; `None` for all others. A session that
+    /// logged where it stood can still be looked at.
+    pub fn slide_axis(&self, joint: &str) -> Option<Unit<Vector3<f64>>> {
+        self.slides.iter().find(|(name, _)| name == joint).map(|(_, axis)| *axis)
+    }
+
+    /// Names of the joints that slide and are held.
+    pub fn slides(&self) -> Vec<String> {
+        self.slides.iter().map(|(name, _)| name.clone()).collect()
     }
 
     /// Number of joints that move by themselves.

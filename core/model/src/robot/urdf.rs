@@ -33,9 +33,11 @@ impl Description {
     /// As [`Self::from_urdf`], for what is left.
     pub fn from_urdf_measured(text: &str) -> Result<(Self, bool), Error> {
         let mut robot = parse(text)?;
+        let slides = sliding(&robot)?;
         let (held, unlimited) = relax(&mut robot);
         let mut description = Self::from_robot(&robot)?;
         description.held = held;
+        description.slides = slides;
         Ok((description, unlimited))
     }
 
@@ -55,8 +57,14 @@ impl Description {
             .iter()
             .map(|(link, _)| read_link(&robot.links[*link], &colors))
             .collect::<Result<Vec<_>, _>>()?;
-        let mut description =
-            Self { name: robot.name.clone(), links, joints: vec![], movable: vec![], held: vec![] };
+        let mut description = Self {
+            name: robot.name.clone(),
+            links,
+            joints: vec![],
+            movable: vec![],
+            held: vec![],
+            slides: vec![],
+        };
         description.add_joints(robot, &order)?;
         Ok(description)
     }
@@ -132,6 +140,14 @@ fn check_inertial(inertial: &urdf_rs::Inertial) -> Result<(), Implausible> {
     let i = &inertial.inertia;
     plausible::LINK_MASS_KG.check(inertial.mass.value)?;
     plausible::INERTIA_KGM2.check_all(&[i.ixx, i.ixy, i.ixz, i.iyy, i.iyz, i.izz])
+}
+
+/// Joints that slide by themselves, and along which direction.
+fn sliding(robot: &urdf_rs::Robot) -> Result<Vec<(String, Unit<Vector3<f64>>)>, Error> {
+    let own =
+        |joint: &&urdf_rs::Joint| matches!(joint.joint_type, JointType::Prismatic) && joint.mimic.is_none();
+    let read = |joint: &urdf_rs::Joint| Ok((joint.name.clone(), axis_of(joint)?));
+    robot.joints.iter().filter(own).map(read).collect()
 }
 
 /// Makes of a robot what can be measured: see [`Description::from_urdf_measured`]. The joints that
@@ -237,6 +253,15 @@ fn moves(joint: &urdf_rs::Joint) -> bool {
     !matches!(joint.joint_type, JointType::Fixed)
 }
 
+fn axis_of(joint: &urdf_rs::Joint) -> Result<Unit<Vector3<f64>>, Error> {
+    Unit::try_new(Vector3::from(joint.axis.xyz.0), 1e-9)
+        .filter(|axis| axis.iter().all(|c| c.is_finite()))
+        .ok_or_else(|| Error::Number {
+            place: format!("joint {}", joint.name),
+            what: "its axis has no direction".to_owned(),
+        })
+}
+
 fn read_kind(joint: &urdf_rs::Joint, indices: &BTreeMap<&str, JointIndex>) -> Result<JointKind, Error> {
     match joint.joint_type {
         JointType::Fixed => return Ok(JointKind::Fixed),
@@ -246,9 +271,7 @@ fn read_kind(joint: &urdf_rs::Joint, indices: &BTreeMap<&str, JointIndex>) -> Re
         }
     }
     let number = |what: &str| Error::Number { place: format!("joint {}", joint.name), what: what.to_owned() };
-    let axis = Unit::try_new(Vector3::from(joint.axis.xyz.0), 1e-9)
-        .filter(|axis| axis.iter().all(|c| c.is_finite()))
-        .ok_or_else(|| number("its axis has no direction"))?;
+    let axis = axis_of(joint)?;
     let (lower, upper) = (joint.limit.lower, joint.limit.upper);
     // Also catches NaN; URDF without limits reads as 0 to 0.
     if !(lower < upper && lower.is_finite() && upper.is_finite()) {

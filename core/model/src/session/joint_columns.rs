@@ -72,6 +72,17 @@ impl JointColumn {
         column.strip_prefix(self.prefix)?.strip_suffix(self.suffix).filter(|joint| !joint.is_empty())
     }
 
+    /// The same of a joint that slides: `cmd_<joint>_m`.
+    pub fn slide(self) -> Self {
+        Self { suffix: "_m", ..self }
+    }
+
+    /// Name of the column that a table has of a joint, be it in radians or in meters.
+    pub fn name_in(self, table: &Table, joint: &str) -> String {
+        let slide = self.slide().name(joint);
+        if table.has(&slide) && !table.has(&self.name(joint)) { slide } else { self.name(joint) }
+    }
+
     /// What a column holds, by its name, if it is one of any joint.
     pub fn quantity(column: &str) -> Option<Quantity> {
         [
@@ -81,6 +92,8 @@ impl JointColumn {
             (Self::TORQUE, plausible::TORQUE_NM),
             (Self::TEMPERATURE, plausible::TEMPERATURE_C),
             (Self::LOAD, plausible::LOAD),
+            (Self::COMMANDED.slide(), plausible::SLIDE_M),
+            (Self::ENCODER.slide(), plausible::SLIDE_M),
         ]
         .into_iter()
         .find_map(|(columns, quantity)| columns.joint(column).map(|_| quantity))
@@ -93,6 +106,6 @@ impl JointColumn {
 
     /// The cells of a row, in the order of the joints.
     pub fn row(self, table: &Table, joints: &[String], row: usize) -> Vec<Option<f64>> {
-        joints.iter().map(|joint| table.number(&self.name(joint), row)).collect()
+        joints.iter().map(|joint| table.number(&self.name_in(table, joint), row)).collect()
     }
 }

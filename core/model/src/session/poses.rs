@@ -25,6 +25,7 @@ const TEXTS: [&str; 4] = ["group", "approach", "set", "tip"];
 /// The length of a measured quaternion may be rounded by this; further off it is no orientation.
 const ROUNDED: f64 = 0.01;
 const OF_JOINTS: [JointColumn; 3] = [JointColumn::COMMANDED, JointColumn::ENCODER, JointColumn::TORQUE];
+const ANGLES: [JointColumn; 2] = [JointColumn::COMMANDED, JointColumn::ENCODER];
 
 /// What a column of numbers holds.
 fn quantity(column: &str) -> Option<Quantity> {
@@ -80,7 +81,8 @@ impl PoseTable {
     /// Reads the table of a chain with these joints.
     pub fn read(file: &Path, joints: &[String]) -> Result<Self, SessionError> {
         let mut read = Table::read(file, |name| {
-            let of_joint = OF_JOINTS.iter().any(|column| column.is_of(name, joints));
+            let of_joint = OF_JOINTS.iter().any(|column| column.is_of(name, joints))
+                || ANGLES.iter().any(|column| column.slide().is_of(name, joints));
             if of_joint || MEASURED.contains(&name) || ORIENTATION.contains(&name) || NUMBERS.contains(&name)
             {
                 Some(ColumnKind::Number)
@@ -90,7 +92,8 @@ impl PoseTable {
         })?;
         for joint in joints {
             let names = [JointColumn::COMMANDED.name(joint), JointColumn::ENCODER.name(joint)];
-            if !names.iter().any(|name| read.table.has(name)) {
+            let slides = ANGLES.map(|column| column.slide().name(joint));
+            if !names.iter().chain(&slides).any(|name| read.table.has(name)) {
                 return Err(read.missing(
                     &names.join(" or "),
                     "every joint of the chain in session.toml needs its commanded or encoder angle",
@@ -145,6 +148,25 @@ impl PoseTable {
             MEASURED.contains(&name) || (!encoders_known && JointColumn::COMMANDED.is_of(name, &joints))
         });
         Self { joints, table }
+    }
+
+    /// The same table with other rows: joints that slide keep their columns in meters.
+    #[must_use]
+    pub fn with_rows(&self, rows: &[PoseRow]) -> Self {
+        let mut table = Self::from_rows(self.joints.clone(), rows);
+        for joint in self.joints.iter().filter(|joint| self.slides(joint) == Some(true)) {
+            for column in ANGLES {
+                table.table.rename(&column.name(joint), &column.slide().name(joint));
+            }
+        }
+        table
+    }
+
+    /// Whether a joint was logged in meters, as what slides is; `None` where it was not logged at all.
+    pub fn slides(&self, joint: &str) -> Option<bool> {
+        let has =
+            |columns: [JointColumn; 2]| columns.iter().any(|column| self.table.has(&column.name(joint)));
+        if has(ANGLES) { Some(false) } else { has(ANGLES.map(JointColumn::slide)).then_some(true) }
     }
 
     /// Joints of the chain, from base to tip.

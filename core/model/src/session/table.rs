@@ -177,6 +177,13 @@ impl Table {
         self.column(name).is_some()
     }
 
+    /// Gives a column another name; nothing where it is not there.
+    pub(super) fn rename(&mut self, from: &str, to: &str) {
+        if let Some(column) = self.columns.iter_mut().find(|column| column.name == from) {
+            to.clone_into(&mut column.name);
+        }
+    }
+
     fn column(&self, name: &str) -> Option<&Column> {
         self.columns.iter().find(|column| column.name == name)
     }

@@ -10,12 +10,13 @@ pub(super) static JOINT_ZERO: Entry = Entry {
     meaning: "The joint stands elsewhere than its encoder says, by the same angle everywhere.",
     remedy: "Remount the horn, or set the encoder's zero against a jig.",
     parameters: &[parameter("offset_rad", 0.044)],
+    sliding: &[parameter("offset_m", 0.01)],
     site: Site::JointOrEvery(&[parameter("offset_rad", 0.044); 12]),
     shape: Shape::None,
     shown: |rows| rows.arm,
     act: Act::Turn(|at| at.value()),
     reported: Effect::plain,
-    is: &[Is::Planned, Is::Origin],
+    is: &[Is::Planned, Is::Origin, Is::OfSlides],
 };
 
 pub(super) static JOINT_SCALE: Entry = Entry {
@@ -23,12 +24,13 @@ pub(super) static JOINT_SCALE: Entry = Entry {
     meaning: "The joint turns further, or less far, than commanded, in proportion to its angle.",
     remedy: "Check the gear ratio and the ticks per turn in the servo's settings.",
     parameters: &[parameter("scale", 0.01)],
+    sliding: &[],
     site: Site::Joint,
     shape: Shape::None,
     shown: |rows| rows.arm,
     act: Act::Turn(|at| at.value() * at.angle_rad()),
     reported: Effect::plain,
-    is: &[Is::Planned],
+    is: &[Is::Planned, Is::OfSlides],
 };
 
 pub(super) static JOINT_ECCENTRICITY: Entry = Entry {
@@ -36,6 +38,7 @@ pub(super) static JOINT_ECCENTRICITY: Entry = Entry {
     meaning: "The reading swings once or twice per turn: magnet or gear sits off the axis.",
     remedy: "Recenter the encoder's magnet, or swap the servo.",
     parameters: &[parameter("sine_rad", 0.0087), parameter("cosine_rad", 0.0087)],
+    sliding: &[],
     site: Site::Joint,
     shape: Shape::OnceOrTwice,
     shown: |rows| rows.arm,
@@ -49,12 +52,13 @@ pub(super) static TOOTH_RIPPLE: Entry = Entry {
     meaning: "The reading ripples with every tooth of a gear.",
     remedy: "Look for a chipped or dry gear; grease or swap it.",
     parameters: &[parameter("sine_rad", 0.00175), parameter("cosine_rad", 0.00175)],
+    sliding: &[],
     site: Site::Joint,
     shape: Shape::Teeth,
     shown: |rows| rows.arm,
     act: Act::Turn(wave),
     reported: Effect::wave,
-    is: &[],
+    is: &[Is::SeenBehindGear],
 };
 
 pub(super) static BACKLASH: Entry = Entry {
@@ -62,12 +66,13 @@ pub(super) static BACKLASH: Entry = Entry {
     meaning: "The joint stops on one side or the other of its play, as it last moved.",
     remedy: "Approach always from one side; tighten or swap worn gears.",
     parameters: &[parameter("width_rad", 0.007)],
+    sliding: &[parameter("width_m", 0.002)],
     site: Site::Joint,
     shape: Shape::None,
     shown: |rows| rows.directions,
     act: Act::Turn(|at| 0.5 * at.value() * at.direction()),
     reported: Effect::size,
-    is: &[Is::Planned],
+    is: &[Is::Planned, Is::SeenBehindGear, Is::OfSlides],
 };
 
 pub(super) static GRAVITY_BACKLASH: Entry = Entry {
@@ -75,12 +80,13 @@ pub(super) static GRAVITY_BACKLASH: Entry = Entry {
     meaning: "The load pushes the gears to one flank; where the load turns over, the joint drops through its play.",
     remedy: "Keep to postures that load the joint one way, or add a light spring.",
     parameters: &[parameter("width_rad", 0.007)],
+    sliding: &[],
     site: Site::Joint,
     shape: Shape::None,
     shown: |rows| rows.arm,
     act: Act::Turn(|at| 0.5 * at.value() * (at.torque_nm() / SEATING_TORQUE_NM).tanh()),
     reported: Effect::size,
-    is: &[Is::Planned, Is::OneSided],
+    is: &[Is::Planned, Is::OneSided, Is::SeenBehindGear],
 };
 
 pub(super) static STICTION: Entry = Entry {
@@ -88,6 +94,7 @@ pub(super) static STICTION: Entry = Entry {
     meaning: "Friction stops the joint short of its goal, on the side it came from.",
     remedy: "Raise the integral gain a little, or approach from one side.",
     parameters: &[parameter("width_rad", 0.005)],
+    sliding: &[],
     site: Site::Joint,
     shape: Shape::None,
     shown: |rows| rows.directions && rows.commanded,
@@ -101,6 +108,7 @@ pub(super) static EARLY_LOG: Entry = Entry {
     meaning: "Angles were logged before the arm had come to rest.",
     remedy: "Wait longer before logging, or lower the tolerance of arrival.",
     parameters: &[parameter("fraction", 0.5)],
+    sliding: &[],
     site: Site::JointOrAllAlike,
     shape: Shape::None,
     shown: |rows| rows.lag,
@@ -114,6 +122,7 @@ pub(super) static SERVO_WARM_UP: Entry = Entry {
     meaning: "The joint's zero wanders while the servo warms up.",
     remedy: "Let the servos warm up before measuring, or calibrate warm.",
     parameters: &[parameter("amplitude_rad", 0.0044)],
+    sliding: &[],
     site: Site::Joint,
     shape: Shape::TimeConstant(Known::arm_span_s),
     shown: Known::arm_lasts,
@@ -127,12 +136,13 @@ pub(super) static SLIPPED_HORN: Entry = Entry {
     meaning: "From one moment on the joint stands elsewhere: something slipped.",
     remedy: "Tighten the horn's screw, then measure its zero again.",
     parameters: &[parameter("step_rad", 0.087)],
+    sliding: &[],
     site: Site::Joint,
     shape: Shape::Moment,
     shown: Known::has_moments,
     act: Act::Turn(|at| at.value() * at.effect.stepped(at.t_secs())),
     reported: Effect::plain,
-    is: &[],
+    is: &[Is::SeenBehindGear],
 };
 
 pub(super) static JOINT_COUPLING: Entry = Entry {
@@ -140,12 +150,13 @@ pub(super) static JOINT_COUPLING: Entry = Entry {
     meaning: "The joint moves along with another one: a cable or tendon pulls.",
     remedy: "Give the cable more slack, or route it through the axis.",
     parameters: &[parameter("ratio", 0.025)],
+    sliding: &[],
     site: Site::JointAfterAnother,
     shape: Shape::None,
     shown: |rows| rows.arm,
     act: Act::Turn(|at| at.value() * at.angle_before_rad()),
     reported: Effect::coupled,
-    is: &[Is::Planned],
+    is: &[Is::Planned, Is::SeenBehindGear],
 };
 
 pub(super) static AXIS_SKEW: Entry = Entry {
@@ -153,6 +164,7 @@ pub(super) static AXIS_SKEW: Entry = Entry {
     meaning: "The axis is not at the angle that the model gives it.",
     remedy: "Check how the part is seated.",
     parameters: &[parameter("rot_a_rad", TILT), parameter("rot_b_rad", TILT)],
+    sliding: &[],
     site: Site::JointOrEvery(&[parameter("rot_rad", TILT); 24]),
     shape: Shape::None,
     shown: |rows| rows.arm,
@@ -161,7 +173,7 @@ pub(super) static AXIS_SKEW: Entry = Entry {
         deviation.skew_rad[at.joint] += a * at.value() + b * at.values[1];
     }),
     reported: Effect::skew,
-    is: &[Is::Planned, Is::Origin],
+    is: &[Is::Planned, Is::Origin, Is::OfSlides],
 };
 
 /// A sine and a cosine of the angle, `shape` times per turn.

@@ -10,6 +10,7 @@ pub(super) static SERVO_DROOP: Entry = Entry {
     meaning: "The servo holds its goal like a spring and gives way under load; its encoder sees it.",
     remedy: "Raise the position gain, or command the angle with the droop added.",
     parameters: &[parameter("compliance_rad_per_nm", 0.033)],
+    sliding: &[],
     site: Site::JointOrAllAlike,
     shape: Shape::None,
     shown: |rows| rows.arm && rows.commanded,
@@ -23,6 +24,7 @@ pub(super) static JOINT_SAG: Entry = Entry {
     meaning: "The bracket behind the encoder bends under load; the encoder does not see it.",
     remedy: "Stiffen the bracket, tighten its screws, lighten the hand.",
     parameters: &[parameter("compliance_rad_per_nm", 0.015)],
+    sliding: &[],
     site: Site::JointOrAllAlike,
     shape: Shape::None,
     shown: |rows| rows.arm,
@@ -36,6 +38,7 @@ pub(super) static SIDEWAYS_GIVE: Entry = Entry {
     meaning: "The joint gives way across its axis under load.",
     remedy: "Check the bearing and its preload; add a second bearing.",
     parameters: &[parameter("compliance_rad_per_nm", 0.01)],
+    sliding: &[],
     site: Site::Joint,
     shape: Shape::None,
     shown: |rows| rows.arm,
@@ -43,7 +46,7 @@ pub(super) static SIDEWAYS_GIVE: Entry = Entry {
         deviation.skew_rad[at.joint] += at.situation.sideways_nm[at.joint] * at.value();
     }),
     reported: Effect::plain,
-    is: &[Is::Planned, Is::OfLoad, Is::OneSided],
+    is: &[Is::Planned, Is::OfLoad, Is::OneSided, Is::OfSlides],
 };
 
 pub(super) static LINK_BENDING: Entry = Entry {
@@ -51,6 +54,7 @@ pub(super) static LINK_BENDING: Entry = Entry {
     meaning: "The link bends under the load.",
     remedy: "Stiffen the link, lighten the hand.",
     parameters: &[parameter("compliance_m_per_n", 0.0002)],
+    sliding: &[],
     site: Site::Link,
     shape: Shape::None,
     shown: |rows| rows.arm,
@@ -64,6 +68,7 @@ pub(super) static CREEP: Entry = Entry {
     meaning: "The arm sinks slowly while it holds a pose.",
     remedy: "Measure soon after arriving; look for soft plastic parts under load.",
     parameters: &[parameter("compliance_rad_per_nm", 0.01)],
+    sliding: &[],
     site: Site::Joint,
     shape: Shape::TimeConstant(|rows| rows.longest_hold_s),
     shown: Known::is_held,
@@ -77,6 +82,7 @@ pub(super) static TORQUE_LIMIT: Entry = Entry {
     meaning: "The servo runs into its torque limit in stretched poses.",
     remedy: "Raise the torque limit, cool the servo, avoid stretched poses.",
     parameters: &[parameter("give_rad_per_nm", 0.1)],
+    sliding: &[],
     site: Site::Joint,
     shape: Shape::Limit,
     shown: |rows| rows.arm && rows.commanded,
