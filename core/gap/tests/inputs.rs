@@ -68,7 +68,8 @@ impl Plan {
         let each = self.tips.len().max(1);
         let angles: Vec<[f64; 6]> =
             (0..self.rows).map(|_| draw()).flat_map(|pose| std::iter::repeat_n(pose, each)).collect();
-        let sides = (0..angles.len()).map(|i| if i / each % 2 == 0 { 1.0 } else { -1.0 }).collect();
+        let sides =
+            (0..angles.len()).map(|i| if (i / each).is_multiple_of(2) { 1.0 } else { -1.0 }).collect();
         Rows { measured: vec![Isometry3::identity(); angles.len()], angles, sides }
     }
 

@@ -142,7 +142,7 @@ impl Looks {
     /// When the robot has no such arm.
     pub fn lags(&self, start: &Start) -> Result<Measurements, HandEyeError> {
         let arm = Arm::of_rig(&start.described, self.hand.index_tip())?;
-        let joints: Vec<_> = arm.parts.iter().map(|part| part.index).collect();
+        let joints: Vec<_> = arm.parts.iter().filter_map(|part| part.index).collect();
         let rows = self.looks.iter().map(|look| Observation {
             commanded_rad: Some(look.commanded.of(&joints)),
             ..row(What::Pose, look.sight.posture.of(&joints), look.direction(&joints))
@@ -241,7 +241,7 @@ impl<'a> Eyes<'a> {
         let (described, hand, looks) = (&start.described, self.looks.hand, self.looks);
         let planner = planner(&start.model, hand)?;
         let arm = Arm::of_rig(described, hand.palm())?;
-        let joints: Vec<_> = arm.parts.iter().map(|part| part.index).collect();
+        let joints: Vec<_> = arm.parts.iter().filter_map(|part| part.index).collect();
         // Those who fit know the neck's zero as an unknown: here it is taken out.
         let mut eyes = [0.0; 7];
         eyes[0] = neck_rad(start);

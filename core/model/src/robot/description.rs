@@ -27,7 +27,14 @@ pub struct Description {
     /// only where a description was read leniently.
     pub(super) held: Vec<(String, String)>,
     /// Those of them that slide, with the direction, axes of the joint.
-    pub(super) slides: Vec<(String, Unit<Vector3<f64>>)>,
+    pub(super) slides: Vec<Slide>,
+}
+
+/// A joint that slides, and along which direction, axes of the joint.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Slide {
+    pub joint: String,
+    pub axis: Unit<Vector3<f64>>,
 }
 
 /// A rigid part.
@@ -299,12 +306,12 @@ impl Description {
     /// Along which direction, axes of the joint, a joint that is held slides; `None` for all others. A session that
     /// logged where it stood can still be looked at.
     pub fn slide_axis(&self, joint: &str) -> Option<Unit<Vector3<f64>>> {
-        self.slides.iter().find(|(name, _)| name == joint).map(|(_, axis)| *axis)
+        self.slides.iter().find(|slide| slide.joint == joint).map(|slide| slide.axis)
     }
 
     /// Names of the joints that slide and are held.
     pub fn slides(&self) -> Vec<String> {
-        self.slides.iter().map(|(name, _)| name.clone()).collect()
+        self.slides.iter().map(|slide| slide.joint.clone()).collect()
     }
 
     /// Number of joints that move by themselves.

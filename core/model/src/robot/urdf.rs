@@ -6,7 +6,7 @@ use nalgebra::{Isometry3, Matrix3, Translation3, Unit, UnitQuaternion, Vector3};
 use urdf_rs::{Geometry, JointType};
 
 use super::description::{
-    Description, Inertia, Joint, JointIndex, JointKind, Limits, Link, LinkIndex, Mimic, Shape, Visual,
+    Description, Inertia, Joint, JointIndex, JointKind, Limits, Link, LinkIndex, Mimic, Shape, Slide, Visual,
 };
 use super::error::DescriptionError as Error;
 use crate::files::told;
@@ -143,10 +143,10 @@ fn check_inertial(inertial: &urdf_rs::Inertial) -> Result<(), Implausible> {
 }
 
 /// Joints that slide by themselves, and along which direction.
-fn sliding(robot: &urdf_rs::Robot) -> Result<Vec<(String, Unit<Vector3<f64>>)>, Error> {
+fn sliding(robot: &urdf_rs::Robot) -> Result<Vec<Slide>, Error> {
     let own =
         |joint: &&urdf_rs::Joint| matches!(joint.joint_type, JointType::Prismatic) && joint.mimic.is_none();
-    let read = |joint: &urdf_rs::Joint| Ok((joint.name.clone(), axis_of(joint)?));
+    let read = |joint: &urdf_rs::Joint| Ok(Slide { joint: joint.name.clone(), axis: axis_of(joint)? });
     robot.joints.iter().filter(own).map(read).collect()
 }
 

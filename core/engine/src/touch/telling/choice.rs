@@ -80,7 +80,7 @@ fn touch_tangents(rig: &Rig, arm: &Arm, effects: &[Effect], candidates: &[Candid
     let surface = Some(Surface::of(&rig.touchscreen));
     let rows = candidates.iter().map(|candidate| {
         let angles_rad =
-            candidate.path.contact.of(&arm.parts.iter().map(|part| part.index).collect::<Vec<_>>());
+            candidate.path.contact.of(&arm.parts.iter().filter_map(|part| part.index).collect::<Vec<_>>());
         let direction = candidate.path.direction.iter().map(|sign| f64::from(*sign)).collect();
         row(What::Touch, angles_rad, direction)
     });
