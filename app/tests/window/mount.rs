@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use egui_kittest::kittest::Queryable as _;
 use plumbline::{Screen, ThemeChoice, WindowSettings};
-use plumbline_engine::view::{AcceptedCalibration, EyesView, MountView, StepState, TwinView};
+use plumbline_engine::view::{
+    AcceptedCalibration, EyesView, MountView, SourceStatus, SourceView, StepState, TwinView,
+};
 use plumbline_engine::{Command, MountCommand, TwinCommand, View};
 use plumbline_model::StereoCalibration;
 
@@ -71,7 +73,8 @@ fn one_button_leads_through_the_work() {
 fn what_was_accepted_is_behind_and_the_button_leads_to_the_next_step() {
     // Eyes without a mount: on every screen where one looks at them, the mount comes next.
     for screen in [Screen::Live, Screen::Judge, Screen::Accept] {
-        let fake = Fake::over(ready(MountView::default()));
+        let source = SourceView { status: SourceStatus::Running, ..SourceView::default() };
+        let fake = Fake::over(View { source: Arc::new(source), ..ready(MountView::default()) });
         let mut window = fake.window(WindowSettings { screen, ..WindowSettings::default() });
         assert!(says(&window, "Next: measure how the eyes sit in the head (step 2)."), "{screen:?}");
         click(&mut window, "Go to Mount");
