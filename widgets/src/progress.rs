@@ -79,7 +79,7 @@ impl<'a> ProgressLine<'a> {
                     action = self.controls(ui, job).or(action);
                 }
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                    ui.add(egui::Label::new(self.fitted(ui)));
+                    ui.add(egui::Label::new(self.fitted(ui)).wrap());
                 });
             });
         });

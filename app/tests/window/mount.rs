@@ -4,12 +4,14 @@ use std::sync::Arc;
 
 use egui_kittest::kittest::Queryable as _;
 use plumbline::{Screen, ThemeChoice, WindowSettings};
-use plumbline_engine::view::{AcceptedCalibration, EyesView, MountView, StepState, TwinView};
-use plumbline_engine::{Command, MountCommand, TwinCommand, View};
+use plumbline_engine::view::{
+    AcceptedCalibration, EyesView, MountView, RobotView, SourceStatus, SourceView, StepState, TwinView,
+};
+use plumbline_engine::{Command, MountCommand, RobotCommand, TwinCommand, View};
 use plumbline_model::StereoCalibration;
 
 use crate::fake::{Fake, click, says};
-use crate::made_up::{everything, lying_board, mount, rig, solved_mount, twin};
+use crate::made_up::{connected, everything, lying_board, mount, rig, solved_mount, twin};
 
 fn on_mount() -> WindowSettings {
     WindowSettings { screen: Screen::Mount, ..WindowSettings::default() }
@@ -71,7 +73,8 @@ fn one_button_leads_through_the_work() {
 fn what_was_accepted_is_behind_and_the_button_leads_to_the_next_step() {
     // Eyes without a mount: on every screen where one looks at them, the mount comes next.
     for screen in [Screen::Live, Screen::Judge, Screen::Accept] {
-        let fake = Fake::over(ready(MountView::default()));
+        let source = SourceView { status: SourceStatus::Running, ..SourceView::default() };
+        let fake = Fake::over(View { source: Arc::new(source), ..ready(MountView::default()) });
         let mut window = fake.window(WindowSettings { screen, ..WindowSettings::default() });
         assert!(says(&window, "Next: measure how the eyes sit in the head (step 2)."), "{screen:?}");
         click(&mut window, "Go to Mount");
@@ -95,6 +98,27 @@ fn what_was_accepted_is_behind_and_the_button_leads_to_the_next_step() {
     let fake = Fake::over(ready(more));
     let window = fake.window(on_mount());
     assert!(says(&window, "Solve 13 views"));
+}
+
+#[test]
+fn a_servo_that_was_let_go_is_taken_hold_of_before_the_work_goes_on() {
+    let mut joints = connected().joints.to_vec();
+    joints[0].let_go = true;
+    joints[0].problem = Some("it did not answer for a while, so nothing is sent to it".to_owned());
+    let robot = RobotView { joints: joints.into(), ..connected() };
+    let planned = MountView { planned: vec![(0.1, -0.5); 8].into(), ..MountView::default() };
+    for screen in [Screen::Mount, Screen::Touch] {
+        let view = View { robot: Arc::new(robot.clone()), ..ready(planned.clone()) };
+        let fake = Fake::over(view);
+        let mut window = fake.window(WindowSettings { screen, ..WindowSettings::default() });
+        assert!(says(&window, "it did not answer for a while"), "{screen:?}");
+        assert!(!says(&window, "The head turns to 8 poses"), "{screen:?}: it would be refused");
+        fake.take_sent();
+        click(&mut window, "Hold all joints");
+        let sent = fake.take_sent();
+        let holds = matches!(sent.as_slice(), [Command::Robot(RobotCommand::Torque { on: true, .. })]);
+        assert!(holds, "{screen:?}: {sent:?}");
+    }
 }
 
 #[test]

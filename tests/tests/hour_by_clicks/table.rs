@@ -18,6 +18,13 @@ pub struct LegTaken {
     pub slow: usize,
 }
 
+impl fmt::Display for LegTaken {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (clicks, wall_s) = (self.clicks.len(), self.time.as_secs_f64());
+        write!(to, "| {} | {clicks} | {wall_s:.0} s | {} | {} |", self.name, self.pauses, self.slow)
+    }
+}
+
 /// The whole way.
 #[derive(Debug)]
 pub struct Taken {
@@ -58,8 +65,7 @@ impl fmt::Display for Taken {
         writeln!(to, "| leg | clicks | wall time | pauses not asked for | frames over 100 ms |")?;
         writeln!(to, "|---|---:|---:|---:|---:|")?;
         for leg in &self.legs {
-            let (clicks, wall_s) = (leg.clicks.len(), leg.time.as_secs_f64());
-            writeln!(to, "| {} | {clicks} | {wall_s:.0} s | {} | {} |", leg.name, leg.pauses, leg.slow)?;
+            writeln!(to, "{leg}")?;
         }
         let clicks: usize = self.legs.iter().map(|leg| leg.clicks.len()).sum();
         let (pauses, slow) = (self.pauses.len(), self.slow.len());

@@ -64,7 +64,7 @@ impl Walk {
         let (pauses, slow) = (self.watch.pauses.len(), self.watch.slow.len());
         let mut clicks: Vec<String> = vec![];
         if leg.is_chosen {
-            self.click(leg.rail, &mut clicks);
+            self.click(leg.rail, leg, &mut clicks);
         }
         while !(leg.is_behind)(&view(&self.window)) {
             let waited = began.elapsed();
@@ -83,18 +83,20 @@ impl Walk {
             if goes_round {
                 self.lost.push(format!("{}: \"{label}\" again and again", leg.name));
                 assert!(self.lost.len() < 10, "{:#?}", self.lost);
-                self.click(leg.rail, &mut clicks);
+                self.click(leg.rail, leg, &mut clicks);
             } else {
-                self.click(&label, &mut clicks);
+                self.click(&label, leg, &mut clicks);
             }
         }
-        self.legs.push(LegTaken {
+        let taken = LegTaken {
             name: leg.name,
             clicks,
             time: began.elapsed(),
             pauses: self.watch.pauses.len() - pauses,
             slow: self.watch.slow.len() - slow,
-        });
+        };
+        println!("{taken}");
+        self.legs.push(taken);
     }
 
     /// What all of it took.
@@ -103,15 +105,19 @@ impl Walk {
         Taken { legs: self.legs, pauses, slow, frames, longest, lost: self.lost, warnings }
     }
 
-    fn click(&mut self, label: &str, clicks: &mut Vec<String>) {
+    fn click(&mut self, label: &str, leg: &Leg, clicks: &mut Vec<String>) {
         println!("{:7.1} s  {label}", self.began.elapsed().as_secs_f64());
         click(&mut self.window, label);
         clicks.push(label.to_owned());
         // The engine takes in what was pressed while the next frames are drawn: who presses waits for that.
         let pressed = Instant::now();
-        while pressed.elapsed() < ANSWERED_WITHIN && self.primary().as_deref() == Some(label) {
+        let is_offered = |walk: &Self| {
+            [walk.taken(leg), walk.primary()].iter().any(|offered| offered.as_deref() == Some(label))
+        };
+        while pressed.elapsed() < ANSWERED_WITHIN && is_offered(self) {
             self.step(label);
         }
+        self.read = None;
     }
 
     /// One frame, and what is to be seen in it.

@@ -33,6 +33,7 @@ impl Watch {
     pub fn look(&mut self, view: &View) {
         let stops = stopped_by(view);
         if let Some(why) = stops.clone().filter(|_| stops != self.stops) {
+            println!("           pause: {why}");
             self.pauses.push(why);
         }
         self.stops = stops;
@@ -53,7 +54,9 @@ impl Watch {
         }
         self.longest = self.longest.max(took);
         if took > SLOW {
-            self.slow.push(format!("{:.0} ms, {doing}", took.as_secs_f64() * 1e3));
+            let said = format!("{:.0} ms, {doing}", took.as_secs_f64() * 1e3);
+            println!("           slow frame: {said}");
+            self.slow.push(said);
         }
     }
 }

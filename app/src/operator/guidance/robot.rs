@@ -67,6 +67,12 @@ pub(super) fn let_go(robot: &RobotView) -> Option<Guidance> {
     })
 }
 
+/// The same where it answers again, so that it can be taken hold of: nothing goes on before that. One that is still
+/// silent stops only what needs it, and is said there.
+pub(super) fn to_take_hold_of(robot: &RobotView) -> Option<Guidance> {
+    let_go(robot).filter(|guidance| guidance.next.is_some())
+}
+
 fn moving(robot: &RobotView) -> Option<Guidance> {
     let MotionState::Moving { what, fraction, remaining } = &robot.motion else { return None };
     if robot.rests_on_the_way {
@@ -125,6 +131,9 @@ pub(super) fn mount(view: &View) -> Guidance {
         return say(format!("{} Esc or space stops.", next_or(view, "Work on the mount is under way.")));
     }
     if let Some(guidance) = trouble(&view.robot) {
+        return guidance;
+    }
+    if let Some(guidance) = to_take_hold_of(&view.robot) {
         return guidance;
     }
     if view.eyes.in_use.is_none() {

@@ -19,7 +19,10 @@ pub(super) fn touch(view: &View) -> Guidance {
         TouchPhase::Running { doing, .. } => running(touch, doing),
         TouchPhase::Waiting { what, prepare } => waiting(what, prepare.is_some()),
         _ => {
-            if let Some(trouble) = robot::trouble(&view.robot).or_else(|| robot::under_way(view)) {
+            if let Some(trouble) = robot::trouble(&view.robot)
+                .or_else(|| robot::to_take_hold_of(&view.robot))
+                .or_else(|| robot::under_way(view))
+            {
                 return trouble;
             }
             standing(view)
