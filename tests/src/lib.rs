@@ -118,8 +118,12 @@ pub fn click_containing(window: &mut Window, words: &str) {
 }
 
 /// Presses what is found as a hand would: again, if it moved away or began to rest while the finger was
-/// on its way, which the engine's threads decide and not the test.
-fn press(window: &mut Window, what: &str, find: impl for<'w> Fn(&'w Window, &'w str) -> Option<Node<'w>>) {
+/// on its way, which the engine's threads decide and not the test. `what` is given to `find`.
+pub fn press(
+    window: &mut Window,
+    what: &str,
+    find: impl for<'w> Fn(&'w Window, &'w str) -> Option<Node<'w>>,
+) {
     let place = |window: &Window| find(window, what).filter(|node| is_enabled(*node)).map(|node| node.rect());
     let start = Instant::now();
     while start.elapsed() < patience() {

@@ -3,8 +3,9 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use egui_kittest::Node;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use plumbline_tests::{Window, click, thread_processor_time, view, window_of_size};
+use plumbline_tests::{Window, press, thread_processor_time, view, window_of_size};
 
 use crate::legs::Leg;
 use crate::table::{LegTaken, Taken};
@@ -22,6 +23,9 @@ const READ_FOR: Duration = Duration::from_secs(1);
 /// Who sees no answer to a click presses once more.
 const ANSWERED_WITHIN: Duration = Duration::from_secs(5);
 
+/// Of the window.
+const SIZE_PT: [f32; 2] = [1440.0, 900.0];
+
 /// The line at the foot in which the big button stands.
 const BOTTOM_LINE_PT: f32 = 52.0;
 
@@ -31,7 +35,6 @@ const BIG_PT: f32 = 35.0;
 /// A window and what was seen in it so far.
 pub struct Walk {
     window: Window,
-    size: egui::Vec2,
     watch: Watch,
     legs: Vec<LegTaken>,
     lost: Vec<String>,
@@ -43,11 +46,9 @@ pub struct Walk {
 impl Walk {
     /// The first start on the twin, with nothing done before.
     pub fn begin(data_dir: &Path) -> Self {
-        let size = egui::vec2(1440.0, 900.0);
         Self {
             began: Instant::now(),
-            window: window_of_size(data_dir, Some(SCENARIO), size),
-            size,
+            window: window_of_size(data_dir, Some(SCENARIO), SIZE_PT.into()),
             watch: Watch::default(),
             legs: vec![],
             lost: vec![],
@@ -107,7 +108,7 @@ impl Walk {
 
     fn click(&mut self, label: &str, leg: &Leg, clicks: &mut Vec<String>) {
         println!("{:7.1} s  {label}", self.began.elapsed().as_secs_f64());
-        click(&mut self.window, label);
+        press(&mut self.window, label, button);
         clicks.push(label.to_owned());
         // The engine takes in what was pressed while the next frames are drawn: who presses waits for that.
         let pressed = Instant::now();
@@ -143,23 +144,38 @@ impl Walk {
 
     /// The button that this leg takes wherever it is, where it can be pressed.
     fn taken(&self, leg: &Leg) -> Option<String> {
-        let mut found = self.window.query_all_by_label_contains(leg.takes?);
-        let is_button = |node: &egui_kittest::Node<'_>| {
-            let node = node.accesskit_node();
-            node.role() == egui::accesskit::Role::Button && !node.is_disabled()
-        };
-        found.find(is_button)?.accesskit_node().label()
+        let words = leg.takes?;
+        let by_the_foot = self.primary().filter(|label| label.contains(words));
+        by_the_foot.or_else(|| {
+            let mut found = self.window.query_all_by_label_contains(words);
+            found.find(can_be_pressed)?.accesskit_node().label()
+        })
     }
 
-    /// The big button of the bottom line, where it can be pressed.
+    /// What stands on the big button of the bottom line, where it can be pressed.
     fn primary(&self) -> Option<String> {
-        let foot = self.size.y - BOTTOM_LINE_PT;
-        let is_big = |node: &egui_kittest::Node<'_>| {
-            let rect = node.rect();
-            rect.height() >= BIG_PT && rect.top() >= foot && rect.bottom() <= self.size.y
-        };
-        let buttons = self.window.query_all_by_role(egui::accesskit::Role::Button);
-        let mut big = buttons.filter(is_big).filter(|node| !node.accesskit_node().is_disabled());
-        big.next()?.accesskit_node().label()
+        big(&self.window)?.accesskit_node().label()
     }
+}
+
+/// What is pressed for a label: the big button where it says so, as what stands further up may be scrolled away.
+fn button<'w>(window: &'w Window, label: &'w str) -> Option<Node<'w>> {
+    let big = big(window).filter(|node| node.accesskit_node().label().as_deref() == Some(label));
+    big.or_else(|| window.query_all_by_label(label).next())
+}
+
+/// The big button of the bottom line, where it can be pressed.
+fn big(window: &Window) -> Option<Node<'_>> {
+    let [_, height] = SIZE_PT;
+    let is_big = |node: &Node<'_>| {
+        let rect = node.rect();
+        rect.height() >= BIG_PT && rect.top() >= height - BOTTOM_LINE_PT && rect.bottom() <= height
+    };
+    let mut buttons = window.query_all_by_role(egui::accesskit::Role::Button);
+    buttons.find(|node| is_big(node) && can_be_pressed(node))
+}
+
+fn can_be_pressed(node: &Node<'_>) -> bool {
+    let node = node.accesskit_node();
+    node.role() == egui::accesskit::Role::Button && !node.is_disabled()
 }
