@@ -16,8 +16,9 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     ScrollArea::both().auto_shrink(false).show(ui, |ui| {
         grid(ui, cx, &table);
         ui.add_space(space::S);
-        notes(ui, &table);
         action_button(ui, cx, ScoresAction::ExportCsv, "Export CSV…");
+        ui.add_space(space::S);
+        notes(ui, &table);
     });
 }
 
