@@ -26,8 +26,8 @@ const ANSWERED_WITHIN: Duration = Duration::from_secs(5);
 /// Of the window.
 const SIZE_PT: [f32; 2] = [1440.0, 900.0];
 
-/// The line at the foot in which the big button stands.
-const BOTTOM_LINE_PT: f32 = 52.0;
+/// The foot in which the big button stands, with a sentence of two lines.
+const FOOT_PT: f32 = 80.0;
 
 /// The big button's own height; what else stands there is smaller.
 const BIG_PT: f32 = 35.0;
@@ -169,7 +169,7 @@ fn big(window: &Window) -> Option<Node<'_>> {
     let [_, height] = SIZE_PT;
     let is_big = |node: &Node<'_>| {
         let rect = node.rect();
-        rect.height() >= BIG_PT && rect.top() >= height - BOTTOM_LINE_PT && rect.bottom() <= height
+        rect.height() >= BIG_PT && rect.top() >= height - FOOT_PT && rect.bottom() <= height
     };
     let mut buttons = window.query_all_by_role(egui::accesskit::Role::Button);
     buttons.find(|node| is_big(node) && can_be_pressed(node))
