@@ -31,6 +31,14 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
                 super::verdict_line::show(ui, &against.unwrap_or_else(|| verdict(proposal)));
                 ui.add_space(space::S);
             }
+            // What can be done stands over the figures: below them a small window would hide it.
+            if eyes.proposal.is_some() && ui.button("Discard the proposal").clicked() {
+                cx.outbox.act(Action::Discard);
+            }
+            if eyes.in_use.is_some() {
+                super::health::show(ui, cx.view, cx.outbox);
+            }
+            ui.add_space(space::M);
             let proposed =
                 eyes.proposal.as_ref().map(|p| (&*p.calibration, origin_text(&p.origin), p.depth_per_px_m));
             let in_use = eyes
@@ -38,16 +46,6 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
                 .as_ref()
                 .map(|a| (&*a.calibration, format::age(age_of(a.accepted)), a.depth_per_px_m));
             columns(ui, proposed, in_use);
-            if eyes.proposal.is_some() {
-                ui.add_space(space::M);
-                if ui.button("Discard the proposal").clicked() {
-                    cx.outbox.act(Action::Discard);
-                }
-            }
-            if eyes.in_use.is_some() {
-                ui.add_space(space::M);
-                super::health::show(ui, cx.view, cx.outbox);
-            }
         });
     });
 }

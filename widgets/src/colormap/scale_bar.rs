@@ -27,17 +27,24 @@ pub struct ScaleBar<'a> {
     quantity: Quantity,
     orientation: Orientation,
     marker: Option<f32>,
+    is_short: bool,
 }
 
 impl<'a> ScaleBar<'a> {
     /// A scale for values in SI, shown in the unit of `quantity`.
     pub fn new(label: &'a str, scale: ColorScale, quantity: Quantity, orientation: Orientation) -> Self {
-        Self { label, scale, quantity, orientation, marker: None }
+        Self { label, scale, quantity, orientation, marker: None, is_short: false }
     }
 
     /// Marks a value, such as the one under the pointer.
     pub fn marker(mut self, value: Option<f32>) -> Self {
         self.marker = value;
+        self
+    }
+
+    /// Its title is the unit alone, where there is one: for where room is short and words beside it say of what.
+    pub fn short(mut self, is_short: bool) -> Self {
+        self.is_short = is_short;
         self
     }
 
@@ -50,7 +57,11 @@ impl<'a> ScaleBar<'a> {
 
     fn title(&self) -> String {
         let unit = self.quantity.unit();
-        if unit.is_empty() { self.label.to_owned() } else { format!("{}, {unit}", self.label) }
+        match (unit.is_empty(), self.is_short) {
+            (true, _) => self.label.to_owned(),
+            (false, true) => unit.to_owned(),
+            (false, false) => format!("{}, {unit}", self.label),
+        }
     }
 
     /// Draws it along the available width or height.

@@ -30,16 +30,22 @@ pub(super) fn paint(
         let at = corner.left_top() + vec2(0.0, below);
         chip(ui, rect, at, Align2::LEFT_TOP, sentence, Some(Role::Warning));
     }
+    let said = hover_px.map(|at_px| {
+        let text = readout(view, transform, picture, at_px);
+        chip(ui, rect, corner.left_bottom(), Align2::LEFT_BOTTOM, &text, None)
+    });
     let points_per_px =
         view.overlay.and_then(Overlay::arrow_scale).map(|scale| transform.points_per_px * scale);
     if let Some(key) = points_per_px.and_then(|points| ArrowKey::of(points, "px", 0.25 * rect.width())) {
         let (painter, font) = (ui.painter_at(rect), theme::font(ui, &egui::TextStyle::Small));
-        let room = Align2::RIGHT_BOTTOM.anchor_size(corner.right_bottom(), key.size(&painter, &font));
+        let at = |corner| Align2::RIGHT_BOTTOM.anchor_size(corner, key.size(&painter, &font));
+        let room = at(corner.right_bottom());
+        // In a narrow picture it gives way to what is said of the pixel under the pointer.
+        let room = match said.filter(|said| said.intersects(room)) {
+            Some(said) => at(egui::pos2(corner.right(), said.top() - 4.0)),
+            None => room,
+        };
         key.paint(&painter, room, &font, RIM, ON_IMAGE.text_strong);
-    }
-    if let Some(at_px) = hover_px {
-        let text = readout(view, transform, picture, at_px);
-        chip(ui, rect, corner.left_bottom(), Align2::LEFT_BOTTOM, &text, None);
     }
 }
 
@@ -58,7 +64,7 @@ fn readout(view: &ImageView<'_>, transform: &ImageTransform, picture: &Picture, 
     text
 }
 
-fn chip(ui: &Ui, clip: Rect, at: Pos2, anchor: Align2, text: &str, warning: Option<Role>) {
+fn chip(ui: &Ui, clip: Rect, at: Pos2, anchor: Align2, text: &str, warning: Option<Role>) -> Rect {
     let painter = ui.painter_at(clip);
     let font = theme::font(ui, &egui::TextStyle::Small);
     let mark_width = if warning.is_some() { 16.0 } else { 0.0 };
@@ -72,4 +78,5 @@ fn chip(ui: &Ui, clip: Rect, at: Pos2, anchor: Align2, text: &str, warning: Opti
         glyph::paint(&painter, center, 10.0, Glyph::Warning, role.color(&ON_IMAGE));
     }
     painter.galley(rect.min + vec2(6.0 + mark_width, 3.0), galley, ON_IMAGE.text_strong);
+    rect
 }

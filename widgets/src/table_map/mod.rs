@@ -18,6 +18,11 @@ use crate::format::{self, Quantity};
 use crate::overlay::Ink;
 use crate::theme::{Role, space};
 
+/// Narrower than this, the scale beside the map says its unit alone.
+const SHORT_PT: f32 = 300.0;
+/// The plot is never narrower.
+const LEAST_PT: f32 = 80.0;
+
 /// What an outline on the table is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
@@ -231,9 +236,10 @@ impl<'a> TableMap<'a> {
     /// Draws it, as large as the available space allows.
     pub fn show(self, ui: &mut Ui) -> TableMapResponse {
         let of_field = self.field.map(|(field, scale)| (field.name(), scale, field.quantity()));
-        let bar = of_field
-            .or(self.scale)
-            .map(|(name, scale, quantity)| ScaleBar::new(name, scale, quantity, Orientation::Vertical));
+        let is_short = ui.available_width() < SHORT_PT;
+        let bar = of_field.or(self.scale).map(|(name, scale, quantity)| {
+            ScaleBar::new(name, scale, quantity, Orientation::Vertical).short(is_short)
+        });
         let bar_width = bar.as_ref().map_or(0.0, |bar| bar.width(ui) + space::M);
         let room = vec2(ui.available_width() - bar_width, self.height.unwrap_or(ui.available_height()));
         let size = self.size(room);
@@ -258,7 +264,7 @@ impl<'a> TableMap<'a> {
     fn size(&self, room: Vec2) -> Vec2 {
         let span = |range: [f64; 2]| (range[1] - range[0]).max(1e-6) as f32;
         let ratio = span(self.scene.x_m) / span(self.scene.y_m);
-        let plot = (room - paint::AXES).max(vec2(120.0, 120.0 * ratio));
+        let plot = (room - paint::AXES).max(vec2(LEAST_PT, LEAST_PT * ratio));
         paint::AXES + vec2(plot.x.min(plot.y / ratio), plot.y.min(plot.x * ratio))
     }
 
