@@ -86,7 +86,15 @@ fn show_row(ui: &mut Ui, row: &KeyValue, width: f32) {
     let unit = layout(row.unit, tokens.text_weak);
     // Where both do not fit beside each other, the name gets a line of its own.
     let stacked = name.size().x + space::S + value.size().x + UNIT_WIDTH > width;
-    let height = if stacked { ROW_HEIGHT + name.size().y } else { ROW_HEIGHT };
+    // Words longer than a line of their own go on in the next one, over the room of the unit that they lack.
+    let unit_room = if row.unit.is_empty() && stacked { 0.0 } else { UNIT_WIDTH };
+    let value = if stacked && value.size().x > width - unit_room {
+        ui.painter().layout(row.value.clone(), font.clone(), value_color, width - unit_room)
+    } else {
+        value
+    };
+    let value_height = ROW_HEIGHT.max(value.size().y + ROW_HEIGHT - name.size().y);
+    let height = if stacked { value_height + name.size().y } else { ROW_HEIGHT };
 
     let sense = if row.help.is_some() { Sense::focusable_noninteractive() } else { Sense::hover() };
     let (rect, response) = ui.allocate_exact_size(vec2(width, height), sense);
@@ -98,12 +106,15 @@ fn show_row(ui: &mut Ui, row: &KeyValue, width: f32) {
         theme::paint_hover(ui, &response, rect);
     }
     let painter = ui.painter();
-    let line = |galley: &egui::Galley, bottom: f32| bottom - (ROW_HEIGHT + galley.size().y) / 2.0;
-    let name_bottom = if stacked { rect.bottom() - name.size().y } else { rect.bottom() };
-    let end = rect.right() - UNIT_WIDTH;
-    painter.galley(pos2(rect.left(), line(&name, name_bottom)), name, tokens.text_weak);
-    painter.galley(pos2(end - value.size().x, line(&value, rect.bottom())), value, value_color);
-    painter.galley(pos2(end + UNIT_GAP, line(&unit, rect.bottom())), unit, tokens.text_weak);
+    let first = if stacked { rect.top() } else { rect.bottom() - ROW_HEIGHT };
+    let last = if stacked { first + name.size().y } else { first };
+    let line = |galley: &egui::Galley, top: f32| top + (ROW_HEIGHT - galley.size().y) / 2.0;
+    let value_top = last + (ROW_HEIGHT - unit.size().y) / 2.0;
+    let end = rect.right() - if value.rows.len() > 1 { unit_room } else { UNIT_WIDTH };
+    let value_left = (end - value.size().x).max(rect.left());
+    painter.galley(pos2(rect.left(), line(&name, first)), name, tokens.text_weak);
+    painter.galley(pos2(value_left, value_top), value, value_color);
+    painter.galley(pos2(end + UNIT_GAP, line(&unit, last)), unit, tokens.text_weak);
     if let Some(help) = &row.help {
         response.on_hover_text(help);
     }

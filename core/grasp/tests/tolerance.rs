@@ -42,6 +42,13 @@ fn force(rig: &Rig, joint: JointIndex) -> f64 {
     }
 }
 
+/// `PLUMBLINE_OFF_MM` ("0 0 -3"): how far the hand is sent beside where it belongs, along the fingers, across, up; m.
+fn off_m() -> [f64; 3] {
+    let off_mm = std::env::var("PLUMBLINE_OFF_MM").unwrap_or_default();
+    let off_mm: Vec<f64> = off_mm.split(' ').filter_map(|text| text.parse().ok()).collect();
+    if let [x, y, z] = off_mm[..] { [x, y, z].map(|mm| mm * 1e-3) } else { [0.0; 3] }
+}
+
 /// Closes the hand as a grip does, the thumb first; the posture in which all is closed.
 fn closed(twin: &mut Lockstep, rig: &Rig, closing: &Posture) -> Posture {
     let close = rig.pose("close-hand").expect("a pose").applied_to(closing);
@@ -126,7 +133,7 @@ fn creep(twin: &mut Lockstep, rig: &Rig, toy: Toy) {
 #[ignore = "minutes of physics; figures for who chooses how the hand closes"]
 fn at_every_place() {
     for at_m in PLACES_M {
-        match lifted_m(Toy::Tomato, at_m, [0.0; 3]) {
+        match lifted_m(Toy::Tomato, at_m, off_m()) {
             Ok((up_m, level, seconds)) => {
                 println!("{at_m:?}: lifted {:.0} mm, level {level:.2}, {seconds:.1} s", up_m * 1e3)
             }
@@ -219,9 +226,7 @@ fn brought_there_exactly_by_a_robot_with_errors() {
     let link = rig.description.find_link("right_palm_center").expect("a tip");
     let planner = planner(&rig);
     let mut held = 0;
-    let off_mm = std::env::var("PLUMBLINE_OFF_MM").unwrap_or_default();
-    let off_mm: Vec<f64> = off_mm.split(' ').filter_map(|text| text.parse().ok()).collect();
-    let off_m = if let [x, y, z] = off_mm[..] { Vector3::new(x, y, z) * 1e-3 } else { Vector3::zeros() };
+    let off_m = Vector3::from(off_m());
     for at_m in PLACES_M {
         let mut twin = Lockstep::new(rig.clone(), &scenario, 1).expect("a twin");
         Toy::ALL.iter().filter(|other| **other != Toy::Tomato).for_each(|other| twin.remove_toy(*other));

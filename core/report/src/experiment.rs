@@ -52,7 +52,7 @@ pub const TABLE: [&str; 10] = [
     "published",
     "inside",
     "published",
-    "hand to 15 mm",
+    "hand found",
     "refused",
     "palm off, mm",
     "eyes, mm",
@@ -207,7 +207,7 @@ fn color(share: f64, hand_found: Option<bool>) -> Color {
 fn legend(drawing: &mut Drawing, y: f64) {
     let text = "In the dots: lifted; small beside them: lifted of three in the published experiment on the robot. Blue: \
                 always lifted, orange: never, gray: never, and the hand was not located to 15 mm; small rings: \
-                beyond the reach of the published arm. Light gray: touchscreen; dashed: area of the published networks. Palm off: where \
+                beyond the reach of the published arm. Light gray: touchscreen; dashed: area of the published networks. Hand found: to 15 mm. Palm off: where \
                 the hand closed, median … worst; eyes and arm: medians of what each of the two errs by itself.";
     drawing.paragraph([MARGIN, y - 10.0], WIDTH - 2.0 * MARGIN, text, Style::SMALL, 3);
 }

@@ -21,7 +21,9 @@ pub(super) fn row(ui: &mut Ui, cx: &mut PanelContext<'_>, joint: &JointView) {
     ui.horizontal(|ui| {
         ui.set_min_height(24.0);
         let name = short_title(&joint.title);
-        let label = ui.add_sized([TITLE, 22.0], egui::Button::selectable(chosen, name));
+        // With something at its right end, the name stands at its left one, below the others.
+        let button = egui::Button::selectable(chosen, name).right_text("").truncate();
+        let label = ui.add_sized([TITLE, 22.0], button);
         label.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, chosen, &joint.title));
         if label.clicked() {
             cx.state.robot.chosen_joint = Some(joint.joint);

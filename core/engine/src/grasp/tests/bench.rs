@@ -129,7 +129,7 @@ impl Bench {
         let sent = Instant::now();
         self.send(GraspCommand::Hand(step));
         self.until("it to begin", |view| {
-            view.grasp.phase.moves() || sent.elapsed() > Duration::from_millis(700)
+            view.grasp.phase.moves() || sent.elapsed() > Duration::from_millis(1500)
         });
         self.until_idle()
     }
