@@ -8,14 +8,17 @@
 use std::fs::{DirBuilder, File, FileTimes, OpenOptions, TryLockError};
 use std::os::unix::fs::{DirBuilderExt, MetadataExt};
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
+use std::time::{Duration, SystemTime};
 
 use crate::contents::Contents;
 use crate::error::Error;
 use crate::image::{ID_DIGITS, Image, is_id};
 
 /// The variable that names the place of all caches.
-pub const VARIABLE: &str = "XDG_CACHE_HOME";
+const VARIABLE: &str = "XDG_CACHE_HOME";
+/// How to have an image unpacked to another place.
+pub const ELSEWHERE: &str =
+    "set XDG_CACHE_HOME to a folder on another disk, or start with --appimage-extract-and-run";
 
 /// What was unpacked, kept from being removed for as long as the lock is held.
 #[derive(Debug)]
@@ -41,11 +44,11 @@ pub fn folder() -> Result<PathBuf, Error> {
 /// # Errors
 /// When the image is damaged or nothing can be written there.
 pub fn hold(caches: &Path, image: &Image, contents: &Contents) -> Result<Held, Error> {
-    let cannot = |source| Error::CannotWrite { path: caches.to_owned(), source, variable: VARIABLE };
+    let cannot = |source| Error::writing(caches, source, ELSEWHERE);
     DirBuilder::new().recursive(true).mode(0o700).create(caches).map_err(cannot)?;
     let place = Place::new(caches, image.id());
     // Who waited for another start looks again; a folder that is never whole ends it.
-    for _ in 0..MOST_TRIES {
+    for tries in 0..MOST_TRIES {
         let lock = place.lock(|file| file.lock_shared().map(|()| true)).map_err(cannot)?;
         if let Some(lock) = lock.filter(|_| place.whole.is_dir() && contents.are_in(&place.whole)) {
             return Ok(Held { folder: place.whole, lock });
@@ -53,26 +56,34 @@ pub fn hold(caches: &Path, image: &Image, contents: &Contents) -> Result<Held, E
         match place.lock(try_alone).map_err(cannot)? {
             Some(_alone) if place.whole.is_dir() && contents.are_in(&place.whole) => {}
             Some(_alone) => make(&place, image, contents)?,
-            None if place.whole.exists() => return Err(Error::BrokenInUse { folder: place.whole }),
+            // Others who only look hold it for no time.
+            None if place.whole.exists() && tries >= TRIES_WHILE_OTHERS_LOOK => {
+                return Err(Error::BrokenInUse { folder: place.whole });
+            }
             None => {
-                eprintln!("plumbline: another start is unpacking the same image; waiting for it");
+                if tries == 0 && place.part.exists() {
+                    eprintln!("plumbline: another start is unpacking the same image; waiting for it");
+                }
+                std::thread::sleep(BETWEEN_TRIES);
             }
         }
     }
     Err(cannot(std::io::Error::other("what was unpacked does not stay there")))
 }
 
-const MOST_TRIES: usize = 20;
+const MOST_TRIES: usize = 50;
+const TRIES_WHILE_OTHERS_LOOK: usize = 10;
+const BETWEEN_TRIES: Duration = Duration::from_millis(20);
 
 /// Unpacks under another name and renames; the caller holds the lock alone.
 fn make(place: &Place, image: &Image, contents: &Contents) -> Result<(), Error> {
-    let cannot = |source| Error::CannotWrite { path: place.part.clone(), source, variable: VARIABLE };
+    let cannot = |source| Error::writing(&place.part, source, ELSEWHERE);
     image.verify()?;
     // Left by a start that was killed, or no longer whole.
     remove_folder(&place.part).map_err(cannot)?;
     discard(place).map_err(cannot)?;
     let folder = place.whole.parent().unwrap_or(&place.whole);
-    crate::room_for(contents, folder, VARIABLE)?;
+    crate::room_for(contents.bytes(), folder, ELSEWHERE)?;
     eprintln!(
         "plumbline: unpacking into {}, once: {} MB",
         place.whole.display(),
@@ -87,9 +98,9 @@ fn make(place: &Place, image: &Image, contents: &Contents) -> Result<(), Error> 
 }
 
 fn fill(place: &Place, contents: &Contents) -> Result<(), Error> {
-    let cannot = |source| Error::CannotWrite { path: place.part.clone(), source, variable: VARIABLE };
+    let cannot = |source| Error::writing(&place.part, source, ELSEWHERE);
     DirBuilder::new().mode(0o700).create(&place.part).map_err(cannot)?;
-    contents.unpack(&contents.all(), &place.part, VARIABLE)?;
+    contents.unpack(&contents.all(), &place.part, ELSEWHERE)?;
     // Later images find out by it which is the older one.
     let times = FileTimes::new().set_modified(contents.made_at());
     File::open(&place.part).and_then(|part| part.set_times(times)).map_err(cannot)?;

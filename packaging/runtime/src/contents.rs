@@ -75,6 +75,11 @@ impl Contents {
         self.entries.values().map(|entry| entry.file_bytes().unwrap_or_default()).sum()
     }
 
+    /// Bytes of these files.
+    pub fn bytes_of(&self, paths: &BTreeSet<PathBuf>) -> u64 {
+        paths.iter().filter_map(|path| self.entries.get(path)?.file_bytes()).sum()
+    }
+
     /// Whether all of it lies in this folder. What a file holds is not looked at, only how long it is.
     pub fn are_in(&self, folder: &Path) -> bool {
         self.entries.iter().all(|(path, entry)| match (&entry.what, folder.join(path).symlink_metadata()) {
@@ -112,22 +117,22 @@ impl Contents {
     /// and no link that lies there is followed. Links come last, so nothing is written through one.
     ///
     /// # Errors
-    /// When a file cannot be written, with the variable that names another place.
+    /// When a file cannot be written, with how to have it unpacked elsewhere.
     pub fn unpack(
         &self,
         paths: &BTreeSet<PathBuf>,
         folder: &Path,
-        variable: &'static str,
+        elsewhere: &'static str,
     ) -> Result<(), Error> {
         let is_link = |path: &&PathBuf| matches!(self.entries[*path].what, What::Link(_));
         let (links, others): (Vec<&PathBuf>, Vec<&PathBuf>) = paths.iter().partition(is_link);
         // A folder sorts before what lies in it.
         for path in others.into_iter().chain(links) {
             let (entry, to) = (&self.entries[path], folder.join(path));
-            let cannot = |source| Error::CannotWrite { path: to.clone(), source, variable };
+            let cannot = |source| Error::writing(&to, source, elsewhere);
             match &entry.what {
                 What::Folder => make_folder(&to, entry.mode).map_err(cannot)?,
-                What::File(file) => self.unpack_file(file, entry.mode, &to, variable)?,
+                What::File(file) => self.unpack_file(file, entry.mode, &to, elsewhere)?,
                 What::Link(target) => {
                     remove_if_there(&to).map_err(cannot)?;
                     std::os::unix::fs::symlink(target, &to).map_err(cannot)?;
@@ -143,9 +148,9 @@ impl Contents {
         file: &SquashfsFileReader,
         mode: u32,
         to: &Path,
-        variable: &'static str,
+        elsewhere: &'static str,
     ) -> Result<(), Error> {
-        let cannot = |source| Error::CannotWrite { path: to.to_owned(), source, variable };
+        let cannot = |source| Error::writing(to, source, elsewhere);
         let damaged = |why: String| Error::Damaged {
             image: self.image.clone(),
             why: format!("{} in it cannot be read ({why})", to.display()),

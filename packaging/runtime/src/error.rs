@@ -1,6 +1,7 @@
 //! What can go wrong before the program runs, each with what to do about it.
 
-use std::path::PathBuf;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
 
 /// Why the image did not start.
 #[derive(Debug, thiserror::Error)]
@@ -38,8 +39,8 @@ pub enum Error {
     },
     /// The disk is full, or would be.
     #[error(
-        "unpacking needs {needed_mb} MB in {}, where {free_mb} MB are free. Make room there, or set {variable} \
-         to a folder on another disk", folder.display()
+        "unpacking needs {needed_mb} MB in {}, where {free_mb} MB are free. Make room there, or {elsewhere}",
+        folder.display()
     )]
     NoRoom {
         /// Where it would be unpacked.
@@ -48,21 +49,28 @@ pub enum Error {
         needed_mb: u64,
         /// Megabytes that are free.
         free_mb: u64,
-        /// The variable of the environment that names the folder.
-        variable: &'static str,
+        /// How to have it unpacked to another place.
+        elsewhere: &'static str,
+    },
+    /// The disk became full on the way.
+    #[error("the disk is full: {} could not be written to its end. Make room there, or {elsewhere}", path.display())]
+    Full {
+        /// What was being written.
+        path: PathBuf,
+        /// How to have it unpacked to another place.
+        elsewhere: &'static str,
     },
     /// Nothing can be written where the image is to be unpacked.
     #[error(
-        "{} cannot be written to ({source}). Set {variable} to a folder where you may write",
-        path.display()
+        "{} cannot be written ({source}). Make that possible, or {elsewhere}", path.display()
     )]
     CannotWrite {
         /// What was to be written.
         path: PathBuf,
         /// What the system says.
         source: std::io::Error,
-        /// The variable of the environment that names the folder.
-        variable: &'static str,
+        /// How to have it unpacked to another place.
+        elsewhere: &'static str,
     },
     /// The environment names no folder for caches.
     #[error(
@@ -81,16 +89,16 @@ pub enum Error {
     },
     /// What was unpacked cannot be run.
     #[error(
-        "{} cannot be started ({source}). Where the disk of that folder allows no programs, set {variable} to a \
-         folder that does", path.display()
+        "{} cannot be started ({source}). Where the disk of that folder allows no programs, {elsewhere}",
+        path.display()
     )]
     CannotStart {
         /// What was to be started.
         path: PathBuf,
         /// What the system says.
         source: std::io::Error,
-        /// The variable of the environment that names the folder.
-        variable: &'static str,
+        /// How to have it unpacked to another place.
+        elsewhere: &'static str,
     },
     /// The kernel did not say which file runs.
     #[error("the file that was started cannot be told ({0}). It takes /proc; mount it, then start again")]
@@ -109,4 +117,17 @@ pub enum Error {
     /// An option of the runtime that this one has not.
     #[error("there is no option {0} here; --appimage-help names those that there are")]
     NoSuchOption(String),
+}
+
+impl Error {
+    /// Something could not be written.
+    pub fn writing(path: &Path, source: std::io::Error, elsewhere: &'static str) -> Self {
+        let path = path.to_owned();
+        match source.kind() {
+            ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
+                Self::Full { path, elsewhere }
+            }
+            _ => Self::CannotWrite { path, source, elsewhere },
+        }
+    }
 }

@@ -90,7 +90,7 @@ fn become_program(
     of_program: &[OsString],
 ) -> Result<(), Error> {
     let path = folder.join("AppRun");
-    let cannot = |source| Error::CannotStart { path: path.clone(), source, variable: cache::VARIABLE };
+    let cannot = |source| Error::CannotStart { path: path.clone(), source, elsewhere: cache::ELSEWHERE };
     rustix::io::fcntl_setfd(lock, rustix::io::FdFlags::empty()).map_err(|error| cannot(error.into()))?;
     let mut program = Command::new(&path);
     program.args(of_program).env("APPIMAGE", &image.path).env("APPDIR", folder);
@@ -110,22 +110,24 @@ fn extract(image: &Image, pattern: Option<&str>) -> Result<(), Error> {
         None => contents.all(),
     };
     image.verify()?;
+    const ELSEWHERE: &str = "call it in a folder on another disk";
     let folder = Path::new("squashfs-root");
-    let cannot = |source| Error::CannotWrite { path: folder.to_owned(), source, variable: "PWD" };
+    let cannot = |source| Error::writing(folder, source, ELSEWHERE);
     match folder.symlink_metadata() {
         Ok(found) if found.is_dir() => {}
         Ok(_) => return Err(cannot(std::io::ErrorKind::NotADirectory.into())),
         Err(_) => std::fs::create_dir(folder).map_err(cannot)?,
     }
-    contents.unpack(&paths, folder, "PWD")?;
+    room_for(contents.bytes_of(&paths), folder, ELSEWHERE)?;
+    contents.unpack(&paths, folder, ELSEWHERE)?;
     print(&paths.iter().map(|path| format!("{}\n", folder.join(path).display())).collect::<String>())
 }
 
 /// That the disk has room for all of an image.
-fn room_for(contents: &Contents, folder: &Path, variable: &'static str) -> Result<(), Error> {
+fn room_for(bytes: u64, folder: &Path, elsewhere: &'static str) -> Result<(), Error> {
     // Blocks that are not full, and folders.
     const FOR_BLOCKS_BYTES: u64 = 4_000_000;
-    let needed = contents.bytes().saturating_add(FOR_BLOCKS_BYTES);
+    let needed = bytes.saturating_add(FOR_BLOCKS_BYTES);
     // A file system that does not tell is tried.
     let Ok(disk) = rustix::fs::statvfs(folder) else { return Ok(()) };
     let free = disk.f_bavail.saturating_mul(disk.f_frsize);
@@ -135,7 +137,7 @@ fn room_for(contents: &Contents, folder: &Path, variable: &'static str) -> Resul
             folder: folder.to_owned(),
             needed_mb: needed.div_ceil(1_000_000),
             free_mb: free / 1_000_000,
-            variable,
+            elsewhere,
         }),
     }
 }

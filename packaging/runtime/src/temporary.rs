@@ -14,8 +14,8 @@ use crate::image::Image;
 /// The option that the image starts itself with to wait for the end of a run.
 pub const CLEAN_UP: &str = "--appimage-clean-up";
 
-/// The variable that names the folder for temporary files.
-const VARIABLE: &str = "TMPDIR";
+/// How to have an image unpacked to another place.
+const ELSEWHERE: &str = "set TMPDIR to a folder on another disk";
 const NAME: &str = "plumbline-run-";
 const LOCK: &str = "lock";
 const UNPACKED: &str = "AppDir";
@@ -29,9 +29,9 @@ pub fn run(image: &Image, arguments: &[OsString], of_program: &[OsString]) -> Re
     let place = std::path::absolute(&place).map_err(|source| Error::CannotWrite {
         path: place,
         source,
-        variable: VARIABLE,
+        elsewhere: ELSEWHERE,
     })?;
-    crate::room_for(&contents, &place, VARIABLE)?;
+    crate::room_for(contents.bytes(), &place, ELSEWHERE)?;
     let folder = make_folder(&place)?;
     let unpacked = folder.join(UNPACKED);
     let ready = unpack(&contents, &folder, &unpacked).and_then(|lock| {
@@ -52,7 +52,7 @@ fn make_folder(place: &Path) -> Result<PathBuf, Error> {
             Ok(()) => return Ok(folder),
             // Left by a process of the same number.
             Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists && try_number < 100 => {}
-            Err(source) => return Err(Error::CannotWrite { path: folder, source, variable: VARIABLE }),
+            Err(source) => return Err(Error::writing(&folder, source, ELSEWHERE)),
         }
     }
     unreachable!("the last try ends it")
@@ -60,11 +60,11 @@ fn make_folder(place: &Path) -> Result<PathBuf, Error> {
 
 /// The lock is held before anybody waits for it.
 fn unpack(contents: &Contents, folder: &Path, unpacked: &Path) -> Result<File, Error> {
-    let cannot = |source| Error::CannotWrite { path: folder.to_owned(), source, variable: VARIABLE };
+    let cannot = |source| Error::writing(folder, source, ELSEWHERE);
     let lock = OpenOptions::new().write(true).create_new(true).open(folder.join(LOCK)).map_err(cannot)?;
     lock.lock_shared().map_err(cannot)?;
     DirBuilder::new().mode(0o700).create(unpacked).map_err(cannot)?;
-    contents.unpack(&contents.all(), unpacked, VARIABLE)?;
+    contents.unpack(&contents.all(), unpacked, ELSEWHERE)?;
     Ok(lock)
 }
 
@@ -74,7 +74,7 @@ fn leave_somebody(image: &Image, folder: &Path) -> Result<(), Error> {
     command.arg(CLEAN_UP).arg(folder).process_group(0).current_dir("/");
     command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     let left = command.spawn().map(|_| ());
-    left.map_err(|source| Error::CannotStart { path: image.path.clone(), source, variable: VARIABLE })
+    left.map_err(|source| Error::CannotStart { path: image.path.clone(), source, elsewhere: ELSEWHERE })
 }
 
 /// Waits until nobody runs from the folder any more and removes it; nothing but what [`run`] made.
@@ -83,7 +83,7 @@ pub fn clean_up(folder: Option<&Path>) -> Result<(), Error> {
     let is_ours =
         |folder: &&Path| folder.file_name().is_some_and(|name| name.to_string_lossy().starts_with(NAME));
     let folder = folder.filter(is_ours).ok_or_else(no_option)?;
-    let cannot = |source| Error::CannotWrite { path: folder.to_owned(), source, variable: VARIABLE };
+    let cannot = |source| Error::writing(folder, source, ELSEWHERE);
     let lock = File::open(folder.join(LOCK)).map_err(cannot)?;
     lock.lock().map_err(cannot)?;
     std::fs::remove_dir_all(folder).map_err(cannot)

@@ -139,12 +139,17 @@ impl Place {
     /// The image with its caches and temporary files here, and nothing else of this environment.
     pub fn command(&self, image: &Path) -> Command {
         let mut command = Command::new(image);
+        self.at_home(&mut command);
+        command
+    }
+
+    /// So that a command's caches and temporary files are here.
+    pub fn at_home<'a>(&self, command: &'a mut Command) -> &'a mut Command {
         let path = std::env::var_os("PATH").unwrap_or_default();
         std::fs::create_dir_all(self.path("temporary")).expect("a folder");
         command.env_clear().env("PATH", path).env("XDG_CACHE_HOME", self.path("caches"));
         command.env("TMPDIR", self.path("temporary")).current_dir(self.folder.path());
-        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        command
+        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped())
     }
 
     pub fn start(&self, image: &Path, arguments: &[&str]) -> Output {
