@@ -1,11 +1,13 @@
 #!/usr/bin/env bash
 # Packages for those who do not build: a .deb for Debian 12 and Ubuntu 24.04 alike where it was built on
-# the older one, and one folder, as a tarball, that runs from wherever it is unpacked. MuJoCo and ONNX
-# Runtime are inside of both. Called by ./plumbline package; everything is written to target/packages.
+# the older one, one folder, as a tarball, that runs from wherever it is unpacked, and the same folder as
+# an AppImage, one file that runs by itself. MuJoCo and ONNX Runtime are inside of all three. Called by
+# ./plumbline package; everything is written to target/packages.
 #
-# package.sh PROGRAM VERSION OUT MUJOCO_LIBRARY ONNXRUNTIME_LIBRARY
+# package.sh PROGRAM VERSION OUT MUJOCO_LIBRARY ONNXRUNTIME_LIBRARY RUNTIME
+#   RUNTIME: what the AppImage starts with, built from packaging/runtime
 set -euo pipefail
-program=$1 version=$2 out=$3 mujoco=$4 onnxruntime=$5
+program=$1 version=$2 out=$3 mujoco=$4 onnxruntime=$5 runtime=$6
 here=$(cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")" && pwd)
 machine=$(dpkg --print-architecture)
 work=$(mktemp -d)
@@ -13,7 +15,7 @@ work=$(mktemp -d)
 trap "rm -rf -- '$work'" EXIT
 mkdir -p "$out"
 
-# What both packages hold besides the program.
+# What all packages hold besides the program.
 put_desktop_files() {
     local share=$1
     install -D -m 644 "$here/plumbline.desktop" "$share/applications/plumbline.desktop"
@@ -119,5 +121,29 @@ make_folder() {
     echo "$out/$name.tar.gz"
 }
 
+# The folder as an AppImage of type 2: the runtime, a squashfs of the folder, and a line with the sum of
+# both, by which the runtime tells a file that is not whole. It uses up what make_folder left.
+make_appimage() {
+    local folder=$work/plumbline-$version-$machine image=$out/Plumbline-$version-$(uname -m).AppImage offset
+    # At its root an image has what starts it, by this name, and what desktops look for.
+    mv -- "$folder/plumbline" "$folder/AppRun"
+    cp -- "$here/plumbline.desktop" "$here/plumbline.svg" "$folder/"
+    ln -s plumbline.svg "$folder/.DirIcon"
+    mksquashfs "$folder" "$work/squashfs" -comp gzip -root-owned -noappend -no-xattrs -no-progress -quiet >&2
+    install -m 755 "$runtime" "$image.part"
+    # Bytes 8 to 10 of an ELF mean nothing to the kernel; here they say which kind of file this is.
+    printf 'AI\002' | dd of="$image.part" bs=1 seek=8 conv=notrunc status=none
+    offset=$(stat --format %s "$image.part")
+    cat -- "$work/squashfs" >>"$image.part"
+    printf '\nplumbline-image sha256 %s\n' "$(sha256sum <"$image.part" | cut -d ' ' -f 1)" >>"$image.part"
+    [[ $("$image.part" --appimage-offset) == "$offset" ]] || {
+        echo "package: the AppImage does not find its squashfs" >&2
+        exit 1
+    }
+    mv -- "$image.part" "$image"
+    echo "$image"
+}
+
 make_deb
 make_folder
+make_appimage
