@@ -83,6 +83,8 @@ pub(super) struct Slot {
     pub silent: bool,
     /// It was in hand when it fell silent.
     pub let_go: bool,
+    /// The goal that its register held then.
+    pub held_goal: Option<Ticks>,
     /// It missed a question: who it is is asked before anything is written.
     pub verify: bool,
     /// What it complained about last.
@@ -129,6 +131,7 @@ impl Slot {
             in_vain: 0,
             silent: true,
             let_go: false,
+            held_goal: None,
             verify: false,
             complaint: None,
             alarm: false,
@@ -248,8 +251,19 @@ impl Slot {
         reading.temperature_c = measured.temperature_c;
         reading.force = measured.torque_limit;
         reading.read_at = Some(Instant::now());
+        self.keep_hold(holds);
         (self.missed, self.in_vain, self.silent, self.read_in) = (0, 0, false, cycle);
         self.take_torque(holds);
+    }
+
+    /// One that was in hand, fell silent, and is heard again: where it answered too late meanwhile and nothing of it has
+    /// changed, this machine did not get around to listening. A servo that lost its power comes back without torque.
+    fn keep_hold(&mut self, holds: bool) {
+        let by_load = self.was_late(LOAD_COUNTS_FOR, LOAD_COUNTS_TIMES);
+        if self.let_go && holds && by_load && self.goal.is_some() && self.goal == self.held_goal {
+            (self.in_hand, self.let_go) = (true, false);
+            self.reading.goal_rad = self.goal_rad();
+        }
     }
 
     fn take_torque(&mut self, holds: bool) {
@@ -289,7 +303,9 @@ impl Slot {
         if self.silent {
             return;
         }
-        self.let_go |= self.in_hand;
+        if self.in_hand {
+            (self.let_go, self.held_goal) = (true, self.goal);
+        }
         (self.silent, self.in_hand, self.verify) = (true, false, true);
         (self.torque_lost, self.alarm, self.hold_pending, self.insist) = (false, false, false, false);
         (self.goal, self.ticks, self.force) = (None, None, None);
@@ -314,7 +330,7 @@ impl Slot {
     /// It is never written to again, until a scan finds who should be there.
     pub fn bar(&mut self, bar: Bar) {
         self.fall_silent();
-        (self.silent, self.late_at) = (true, None);
+        (self.silent, self.late_at, self.held_goal) = (true, None, None);
         self.identity = Identity::Barred(bar);
     }
 }

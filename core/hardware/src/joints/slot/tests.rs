@@ -72,3 +72,39 @@ fn one_that_is_asked_seldom_and_answers_late_is_not_left_out() {
 fn a_question_that_was_missed_a_moment_ago_leaves_the_angle_known() {
     assert!(neck(Duration::from_millis(300), 4).is_known());
 }
+
+/// What was in hand and is heard again is still in hand where this machine alone was late; else it is taken hold of anew.
+#[test]
+fn a_servo_that_only_this_machine_missed_is_still_in_hand() {
+    let heard_again = |late_answers: u64, holds: bool, goal: i32| {
+        let mut slot = neck(Duration::from_millis(800), 25);
+        (slot.in_hand, slot.goal, slot.in_vain) = (true, Some(Ticks(2048)), 25);
+        slot.fall_silent();
+        assert!(slot.let_go && !slot.in_hand);
+        slot.note_late(late_answers);
+        slot.goal = Some(Ticks(goal));
+        slot.keep_hold(holds);
+        (slot.in_hand, slot.let_go)
+    };
+    assert_eq!(heard_again(1, true, 2048), (true, false));
+    assert_eq!(heard_again(0, true, 2048), (false, true), "no answer came late: its cable may have been out");
+    assert_eq!(heard_again(1, false, 2048), (false, true), "it has lost its torque");
+    assert_eq!(heard_again(1, true, 2100), (false, true), "somebody else has sent it elsewhere");
+    // Long ago, and asked in vain since: that says nothing of now.
+    let mut slot = neck(Duration::from_millis(800), 25);
+    (slot.in_hand, slot.goal) = (true, Some(Ticks(2048)));
+    slot.fall_silent();
+    slot.note_late(1);
+    (slot.late_at, slot.in_vain) = (Instant::now().checked_sub(LOAD_COUNTS_FOR), LOAD_COUNTS_TIMES);
+    slot.goal = Some(Ticks(2048));
+    slot.keep_hold(true);
+    assert!(slot.let_go && !slot.in_hand);
+    // Never taken hold of: it is not in hand for having been heard late.
+    let mut slot = neck(Duration::from_millis(800), 25);
+    slot.goal = Some(Ticks(2048));
+    slot.fall_silent();
+    slot.note_late(1);
+    slot.goal = Some(Ticks(2048));
+    slot.keep_hold(true);
+    assert!(!slot.in_hand);
+}
