@@ -76,7 +76,7 @@ fn a_question_that_was_missed_a_moment_ago_leaves_the_angle_known() {
 /// What was in hand and is heard again is still in hand where this machine alone was late; else it is taken hold of anew.
 #[test]
 fn a_servo_that_only_this_machine_missed_is_still_in_hand() {
-    let heard_again = |late_answers: u64, holds: bool, goal: i32| {
+    let heard_again = |late_answers: u64, holds: bool, goal: u16| {
         let mut slot = neck(Duration::from_millis(800), 25);
         (slot.in_hand, slot.goal, slot.in_vain) = (true, Some(Ticks(2048)), 25);
         slot.fall_silent();
