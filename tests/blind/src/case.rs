@@ -136,13 +136,21 @@ pub fn make_or_smaller(bench: &Bench, planner: &Planner<'_>, recipe: &Recipe) ->
 /// When a file cannot be written.
 pub fn write(case: &Case, cases: &Path, answers: &Path) -> Result<(), BlindError> {
     let name = format!("{:03}", case.answer.case);
-    let folder = cases.join(&name);
-    case.session.write(&folder)?;
-    for (name, text) in &case.files {
+    write_session(&case.session, &case.files, &cases.join(&name))?;
+    case.answer.write(&answers.join(format!("{name}.json")))
+}
+
+/// Writes a session and what lies beside its tables (name and text).
+///
+/// # Errors
+/// When a file cannot be written.
+pub fn write_session(session: &Session, files: &[(String, String)], folder: &Path) -> Result<(), BlindError> {
+    session.write(folder)?;
+    for (name, text) in files {
         let file = folder.join(name);
         std::fs::write(&file, text).map_err(|source| BlindError::File { file, source })?;
     }
-    case.answer.write(&answers.join(format!("{name}.json")))
+    Ok(())
 }
 
 /// The screen does not stand where the rig file says; touches cannot tell, and need not.

@@ -307,7 +307,7 @@ impl Score {
 }
 
 /// From this size on an effect is expected to be found, sigmas. Sizes are made to a tenth.
-const VISIBLE: f64 = 0.89;
+pub(crate) const VISIBLE: f64 = 0.89;
 
 impl Naming {
     fn count(&mut self, hidden: &[Hidden], verdict: &Verdict) {

@@ -35,10 +35,26 @@ pub fn recipes(cases: usize, seed: u64) -> Vec<Wish<Kind>> {
 /// # Errors
 /// When nothing can be hidden.
 pub fn make(wish: &Wish<Kind>) -> Result<Case, BlindError> {
+    Ok(made(wish)?.case)
+}
+
+/// A case with the arm itself, which can be measured again.
+pub(super) struct Made {
+    pub case: Case,
+    pub setup: Setup,
+    pub secrets: Vec<Secret>,
+    pub random: StdRng,
+}
+
+/// Makes a case and keeps the arm.
+///
+/// # Errors
+/// As [`make`].
+pub(super) fn made(wish: &Wish<Kind>) -> Result<Made, BlindError> {
     hide::make_or_smaller(wish, make_one)
 }
 
-fn make_one(wish: &Wish<Kind>) -> Result<Case, BlindError> {
+fn make_one(wish: &Wish<Kind>) -> Result<Made, BlindError> {
     let mut random = StdRng::seed_from_u64(wish.seed);
     let setup = Setup::drawn(wish.plan, wish.repeated, &mut random);
     let bare = setup.measure(&[], &setup.visits, Some(&mut random));
@@ -64,11 +80,13 @@ fn make_one(wish: &Wish<Kind>) -> Result<Case, BlindError> {
         rows: met.len(),
         cells: setup.cells.len(),
     };
-    Ok(Case {
-        session: session(&setup, &met)?,
-        files: vec![(DESCRIPTION.to_owned(), setup.robot.urdf())],
-        answer,
-    })
+    let case = Case { session: session(&setup, &met)?, files: files(&setup), answer };
+    Ok(Made { case, setup, secrets: all, random })
+}
+
+/// What lies beside a session's tables.
+pub(super) fn files(setup: &Setup) -> Vec<(String, String)> {
+    vec![(DESCRIPTION.to_owned(), setup.robot.urdf())]
 }
 
 /// Links that weigh other than described, by the names of the command line.
@@ -84,7 +102,7 @@ fn masses(setup: &Setup) -> Vec<String> {
         .collect()
 }
 
-fn session(setup: &Setup, met: &[Met]) -> Result<Session, BlindError> {
+pub(super) fn session(setup: &Setup, met: &[Met]) -> Result<Session, BlindError> {
     let joints = setup.robot.joints();
     let rows: Vec<_> = met.iter().map(|met| setup.row(met)).collect();
     // Keys of poses stand in sections of their own, as the format has them.
