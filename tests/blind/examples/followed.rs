@@ -68,7 +68,7 @@ fn follow(first: PathBuf, answer: &Answer, mut arm: Arm, is_listed: bool) -> Res
         let asked = serde_json::to_value(next.kind)?;
         let session = arm.again(asked.as_str().unwrap_or_default().parse()?, next.count)?;
         let folder = with_suffix(&folders[0], &format!("-{}", folders.len()));
-        write_session(&session, &arm.files(), &folder)?;
+        write_session(&session, &arm.files(), &arm.slides(), &folder)?;
         folders.push(folder);
         let promised = next.expected_probability;
         finding = judge::search_all(&folders, &options)?;

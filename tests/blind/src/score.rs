@@ -274,7 +274,7 @@ impl Score {
                 continue;
             };
             // Which way play is counted is a matter of taste; how wide it is, is not.
-            let width = key == "width_rad";
+            let width = matches!(key.as_str(), "width_rad" | "width_m");
             let [mut value, mut low, mut high, mut truth] = [value, low, high, *truth];
             if width {
                 if value < 0.0 {

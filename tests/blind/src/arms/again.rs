@@ -97,14 +97,21 @@ impl Arm {
         cases::files(&self.setup)
     }
 
+    /// Names of joints that slide.
+    pub fn slides(&self) -> Vec<String> {
+        self.setup.robot.slides()
+    }
+
     /// The conditions that are compared, at one pose.
     fn cells(&mut self, ask: Ask, base: &Cell) -> Vec<Cell> {
         let base = Cell { payload_kg: 0.0, ..base.clone() };
         let mut elsewhere = || Cell {
-            goals_rad: base
-                .goals_rad
+            goals_rad: self
+                .setup
+                .robot
+                .parts
                 .iter()
-                .map(|_| self.random.random_range(-SWING_RAD..SWING_RAD))
+                .map(|part| part.stroke() * self.random.random_range(-SWING_RAD..SWING_RAD))
                 .collect(),
             ..base.clone()
         };

@@ -80,7 +80,8 @@ fn make_one(wish: &Wish<Kind>) -> Result<Made, BlindError> {
         rows: met.len(),
         cells: setup.cells.len(),
     };
-    let case = Case { session: session(&setup, &met)?, files: files(&setup), answer };
+    let slides = setup.robot.slides();
+    let case = Case { session: session(&setup, &met)?, files: files(&setup), slides, answer };
     Ok(Made { case, setup, secrets: all, random })
 }
 
@@ -138,6 +139,17 @@ impl Scene for Maker<'_> {
         let joint = if kind.is_of_joint() { random.random_range(0..self.setup.robot.len()) } else { 0 };
         let is_beside = |s: &Secret| s.kind == kind && (s.joint == joint || !kind.is_of_joint());
         if taken.iter().any(is_beside) {
+            return None;
+        }
+        // What slides has less that can be wrong, and no cable of another joint goes there.
+        let parts = &self.setup.robot.parts;
+        let from = match kind {
+            Kind::JointCoupling => joint.checked_sub(1),
+            Kind::FarCable => Some((joint + 2) % parts.len()),
+            _ => None,
+        };
+        let slides = parts[joint].slides && !kind.is_of_slides();
+        if slides || from.is_some_and(|from| parts[from].slides) {
             return None;
         }
         // A cable or a link comes from the joint before, and has a length.

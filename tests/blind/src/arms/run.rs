@@ -33,7 +33,7 @@ const PAYLOAD_KG: f64 = 0.5;
 #[derive(Clone, Debug)]
 pub struct Cell {
     pub goals_rad: Vec<f64>,
-    /// Speed at the end of the motion, rad/s of each joint.
+    /// Speed at the end of the motion, rad/s of each joint (m/s of what slides).
     pub speed_rad_s: Vec<f64>,
     /// Side from which all joints arrive; none: wherever they were.
     pub side: Option<f64>,
@@ -97,8 +97,12 @@ impl Setup {
         for pose in 0..poses {
             let mut drawn =
                 |low: f64, high: f64| (0..robot.len()).map(|_| random.random_range(low..high)).collect();
-            let (goals_rad, speed_rad_s): (Vec<f64>, Vec<f64>) =
+            let (mut goals_rad, mut speed_rad_s): (Vec<f64>, Vec<f64>) =
                 (drawn(-SWING_RAD, SWING_RAD), drawn(0.2, 1.0));
+            for (j, part) in robot.parts.iter().enumerate() {
+                goals_rad[j] *= part.stroke();
+                speed_rad_s[j] *= part.stroke();
+            }
             let payload_kg = if is_rich && random.random_bool(0.3) { PAYLOAD_KG } else { 0.0 };
             let set = format!("part {}", 1 + pose % 5);
             let sides: &[Option<f64>] = if is_rich { &[Some(1.0), Some(-1.0)] } else { &[None] };
@@ -165,11 +169,13 @@ impl Setup {
                     .sum();
                 let (mut motors_rad, mut encoder_rad) = (vec![], vec![]);
                 for (j, way) in way.iter().enumerate() {
-                    let short_rad = SHORT_RAD * (0.5 + 0.25 * draw()).clamp(0.0, 1.0);
+                    let stroke = self.robot.parts[j].stroke();
+                    let short_rad = stroke * SHORT_RAD * (0.5 + 0.25 * draw()).clamp(0.0, 1.0);
                     let stands = cell.goals_rad[j] - way * short_rad;
-                    motors_rad.push(stands + JOINT_RAD * draw());
+                    motors_rad.push(stands + stroke * JOINT_RAD * draw());
                     let left_rad = early_s * cell.speed_rad_s[j] * (1.0 + 0.08 * draw());
-                    encoder_rad.push(((stands - way * left_rad) / TICK_RAD).round() * TICK_RAD);
+                    let tick_rad = stroke * TICK_RAD;
+                    encoder_rad.push(((stands - way * left_rad) / tick_rad).round() * tick_rad);
                 }
                 let moment = Moment {
                     motors_rad,
@@ -203,10 +209,12 @@ impl Setup {
 
     /// The marker as described, mounted as it is.
     fn described(&self, angles_rad: &[f64]) -> Isometry3<f64> {
-        let last =
-            self.robot.parts.iter().zip(angles_rad).fold(Isometry3::identity(), |at, (part, angle)| {
-                at * part.place() * UnitQuaternion::from_scaled_axis(part.axis * *angle)
-            });
+        let last = self
+            .robot
+            .parts
+            .iter()
+            .zip(angles_rad)
+            .fold(Isometry3::identity(), |at, (part, angle)| at * part.place() * part.moved(*angle));
         last * self.robot.last_from_marker() * self.mount()
     }
 
