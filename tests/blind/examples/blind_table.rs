@@ -26,7 +26,7 @@ mod judge;
 use judge::AnyError;
 
 /// Cases are made anew when the physics changes.
-const PHYSICS: &str = "v8";
+const PHYSICS: &str = "v9";
 const THREADS: usize = 2;
 
 struct Arguments {

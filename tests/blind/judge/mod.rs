@@ -17,18 +17,32 @@ use serde_json::json;
 pub type AnyError = Box<dyn std::error::Error + Send + Sync>;
 
 /// Searches the session in a folder.
+#[allow(dead_code, reason = "who follows experiments searches several")]
 pub fn search(folder: &Path, options: &Options) -> Result<Verdict, AnyError> {
-    let session = Session::read(folder)?;
-    let rig = match &session.manifest.rig {
-        RigReference::Named(name) => Rig::built_in(name)?,
-        RigReference::File(file) => Rig::read_measured(&folder.join(file))?,
-    };
-    let measurements = Measurements::of_sessions(&[(folder.display().to_string(), session)], &rig)?;
-    Ok(verdict(&find(&measurements, options, &Unattended)?))
+    Ok(verdict(&search_all(&[folder], options)?))
+}
+
+/// Searches the sessions of one robot in some folders together.
+pub fn search_all(folders: &[impl AsRef<Path>], options: &Options) -> Result<Finding, AnyError> {
+    let mut sessions = vec![];
+    let mut rig = None;
+    for folder in folders {
+        let folder = folder.as_ref();
+        let session = Session::read(folder)?;
+        if rig.is_none() {
+            rig = Some(match &session.manifest.rig {
+                RigReference::Named(name) => Rig::built_in(name)?,
+                RigReference::File(file) => Rig::read_measured(&folder.join(file))?,
+            });
+        }
+        sessions.push((folder.display().to_string(), session));
+    }
+    let measurements = Measurements::of_sessions(&sessions, &rig.ok_or("no session")?)?;
+    Ok(find(&measurements, options, &Unattended)?)
 }
 
 /// A finding as the command line prints it, as far as it is judged.
-fn verdict(finding: &Finding) -> Verdict {
+pub fn verdict(finding: &Finding) -> Verdict {
     let effects = finding.effects.iter().map(|effect| Found {
         id: effect.id.clone(),
         site: effect.site.clone(),

@@ -36,6 +36,8 @@ pub struct Case {
     pub session: Session,
     /// Files beside its tables: name and text (descriptions of robots that the program does not know).
     pub files: Vec<(String, String)>,
+    /// Joints that slide: their columns are in meters.
+    pub slides: Vec<String>,
     /// What is hidden.
     pub answer: Answer,
 }
@@ -106,7 +108,7 @@ pub fn make(bench: &Bench, planner: &Planner<'_>, recipe: &Recipe) -> Result<Cas
         rows: rows.len(),
         cells: maker.cells.len(),
     };
-    Ok(Case { session, files: vec![], answer })
+    Ok(Case { session, files: vec![], slides: vec![], answer })
 }
 
 /// Makes a case; where a kind cannot be as large as wanted on this robot, as large as it can.
@@ -136,13 +138,42 @@ pub fn make_or_smaller(bench: &Bench, planner: &Planner<'_>, recipe: &Recipe) ->
 /// When a file cannot be written.
 pub fn write(case: &Case, cases: &Path, answers: &Path) -> Result<(), BlindError> {
     let name = format!("{:03}", case.answer.case);
-    let folder = cases.join(&name);
-    case.session.write(&folder)?;
-    for (name, text) in &case.files {
+    write_session(&case.session, &case.files, &case.slides, &cases.join(&name))?;
+    case.answer.write(&answers.join(format!("{name}.json")))
+}
+
+/// Writes a session and what lies beside its tables (name and text); columns of what slides are in meters.
+///
+/// # Errors
+/// When a file cannot be written.
+pub fn write_session(
+    session: &Session,
+    files: &[(String, String)],
+    slides: &[String],
+    folder: &Path,
+) -> Result<(), BlindError> {
+    session.write(folder)?;
+    for (name, text) in files {
         let file = folder.join(name);
         std::fs::write(&file, text).map_err(|source| BlindError::File { file, source })?;
     }
-    case.answer.write(&answers.join(format!("{name}.json")))
+    let table = folder.join("poses.csv");
+    if slides.is_empty() {
+        return Ok(());
+    }
+    let failed = |source| BlindError::File { file: table.clone(), source };
+    let text = std::fs::read_to_string(&table).map_err(failed)?;
+    let (head, rows) = text.split_once('\n').unwrap_or((&text, ""));
+    let in_meters = |column: &str| {
+        let own = column.strip_suffix("_rad").filter(|own| {
+            ["cmd_", "enc_"].iter().any(|sort| {
+                own.strip_prefix(sort).is_some_and(|joint| slides.iter().any(|slides| slides == joint))
+            })
+        });
+        own.map_or_else(|| column.to_owned(), |own| format!("{own}_m"))
+    };
+    let head: Vec<String> = head.trim_end().split(',').map(in_meters).collect();
+    std::fs::write(&table, format!("{}\n{rows}", head.join(","))).map_err(failed)
 }
 
 /// The screen does not stand where the rig file says; touches cannot tell, and need not.

@@ -5,7 +5,6 @@ use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
 
 use crate::answer::Plan;
-use crate::case::Case;
 use crate::error::BlindError;
 use crate::mix::SIZES;
 use crate::recipe::Family;
@@ -194,10 +193,10 @@ fn alike<S: Scene>(scene: &S, one: &S::Secret, other: &S::Secret) -> bool {
 ///
 /// # Errors
 /// When it cannot be made whatever is hidden.
-pub fn make_or_smaller<K: Kinds>(
+pub fn make_or_smaller<K: Kinds, Made>(
     wish: &Wish<K>,
-    make: impl Fn(&Wish<K>) -> Result<Case, BlindError>,
-) -> Result<Case, BlindError> {
+    make: impl Fn(&Wish<K>) -> Result<Made, BlindError>,
+) -> Result<Made, BlindError> {
     let mut wish = wish.clone();
     loop {
         let smaller = SIZES.into_iter().rev().find(|smaller| *smaller < 0.9 * wish.size_sigmas);

@@ -9,7 +9,7 @@
 //! - [`recipe`], [`mix`]: which cases shall be made.
 //! - [`case`]: cases drawn by chance, their sessions and their answers.
 //! - [`hide`]: what a case of other scenes hides: [`arms`], drawn by chance and measured from outside, and [`eyes`].
-//! - [`score`], [`table`]: who found what.
+//! - [`score`], [`table`]: who found what; [`followed`]: where the experiments lead that the search asks for.
 
 pub mod answer;
 pub mod arms;
@@ -18,6 +18,7 @@ pub mod case;
 pub mod design;
 mod error;
 pub mod eyes;
+pub mod followed;
 mod heat;
 pub mod hide;
 pub mod measure;

@@ -233,8 +233,18 @@ impl Score {
             .chain(answer.dirt.iter().chain(&answer.also).cloned())
             .map(|n| plain(&n))
             .collect();
+        // A name in the place of what is hidden is not right because a trace of it is there as well.
+        let own = |found: &Found| answer.hidden.iter().any(|hidden| plain(&hidden.named()) == found.name());
+        let is_trace = |found: &Found| answer.dirt.iter().any(|dirt| plain(dirt) == found.name());
+        let stands_for = |found: &Found| {
+            let unnamed = answer.hidden.iter().map(|hidden| plain(&hidden.named()));
+            let mut unnamed =
+                unnamed.filter(|hidden| verdict.effects.iter().all(|other| other.name() != *hidden));
+            unnamed.any(|hidden| found.may_be(&hidden))
+        };
         for found in &verdict.effects {
-            let exact = there.contains(&found.name());
+            let is_in_its_place = !own(found) && is_trace(found) && stands_for(found);
+            let exact = there.contains(&found.name()) && !is_in_its_place;
             let among = there.iter().any(|name| found.may_be(name));
             self.wrong_names.count(!among);
             if found.probability > CONFIDENT {
@@ -264,7 +274,7 @@ impl Score {
                 continue;
             };
             // Which way play is counted is a matter of taste; how wide it is, is not.
-            let width = key == "width_rad";
+            let width = matches!(key.as_str(), "width_rad" | "width_m");
             let [mut value, mut low, mut high, mut truth] = [value, low, high, *truth];
             if width {
                 if value < 0.0 {
@@ -307,7 +317,7 @@ impl Score {
 }
 
 /// From this size on an effect is expected to be found, sigmas. Sizes are made to a tenth.
-const VISIBLE: f64 = 0.89;
+pub(crate) const VISIBLE: f64 = 0.89;
 
 impl Naming {
     fn count(&mut self, hidden: &[Hidden], verdict: &Verdict) {
@@ -471,6 +481,20 @@ mod tests {
         }
         let by_chance = many.calibration_error_by_chance().expect("names");
         assert!((by_chance - 0.0109).abs() < 1e-4, "{by_chance}");
+    }
+
+    #[test]
+    fn a_trace_makes_no_name_right_that_stands_for_what_is_hidden() {
+        let truth = answer(Family::Single, &[("eye-yaw", "right", 2.0)], &["image-shift@right"]);
+        let class: &[&str] = &["image-shift@right", "eye-yaw@right"];
+        let right = |effects: &[(&str, &str, f64, &[&str])]| {
+            let mut score = Score::default();
+            score.count(&truth, &verdict("class", effects));
+            score.stated.iter().map(|(_, _, right)| right).sum::<usize>()
+        };
+        assert_eq!(right(&[("image-shift", "right", 0.6, class)]), 0);
+        assert_eq!(right(&[("image-shift", "right", 0.6, &["image-shift@right"])]), 1, "a trace of its own");
+        assert_eq!(right(&[("eye-yaw", "right", 0.9, &[]), ("image-shift", "right", 0.6, class)]), 2, "both");
     }
 
     #[test]

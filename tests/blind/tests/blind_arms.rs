@@ -50,3 +50,16 @@ fn hidden_effects_of_unknown_arms_are_found_and_nothing_else() {
     assert!(value(&score.wrong_confident) <= 0.15, "confident and wrong: {:?}", score.wrong_confident);
     assert!(value(&score.coverage) >= 0.8, "intervals: {:?}", score.coverage);
 }
+
+#[test]
+fn what_a_joint_does_by_another_one_or_by_its_way_is_told_where_nothing_is_repeated() {
+    let sorts = [Kind::FarCable, Kind::Hysteresis].repeat(2);
+    let mut wishes: Vec<Wish<Kind>> =
+        sorts.into_iter().map(|kind| Wish::of(Family::OffLibrary, Plan::Rich, 5.0, Some(kind))).collect();
+    Wish::number(&mut wishes, 1950);
+    wishes.iter_mut().for_each(|wish| wish.repeated = false);
+    let score = scored(wishes.len(), |number| arms::make(&wishes[number]));
+    let nameless = all(score.nameless.values().copied());
+    assert!(nameless.of == 4 && nameless.hits >= 3, "not in the library: {nameless:?}");
+    assert_eq!(score.nameless_named.hits, 0, "a confident name of what is in no library");
+}

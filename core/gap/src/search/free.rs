@@ -25,6 +25,9 @@ pub(super) struct Rival {
     pub on: String,
 }
 
+/// Of a joint on the angle of another one: what one pulls at another, by a cable say, goes smoothly.
+const FUNCTIONS_OF_ANOTHER: usize = 3;
+
 /// What moves.
 enum Moved {
     /// A column of the lines.
@@ -42,10 +45,11 @@ pub(super) fn rivals(
     linear: &Linear,
 ) -> (Vec<Rival>, Vec<Block>, DMatrix<f64>) {
     let mut rivals = vec![];
-    let mut columns: Vec<Vec<f64>> = vec![];
+    let mut columns: Vec<Vec<Vec<f64>>> = vec![];
     let mut add = |of: String, moved: &Moved, covariate: usize, sided: Option<usize>| {
         let base = base(measurements, linear, moved);
-        let Some(own) = functions(linear, covariates, &base, covariate, sided) else { return };
+        let value = |row: usize| covariates.values[row][covariate];
+        let Some(own) = functions(linear, covariates, &base, &value, sided, FUNCTIONS) else { return };
         let (name, _) = &covariates.names[covariate];
         let on = match sided.and_then(|sided| covariates.names.get(sided)) {
             Some((with, _)) if with.starts_with("direction") => format!("{name} and its direction"),
@@ -53,7 +57,7 @@ pub(super) fn rivals(
             None => name.clone(),
         };
         rivals.push(Rival { of, on });
-        columns.extend(own);
+        columns.push(own);
     };
     let find = |name: &str| covariates.names.iter().position(|(known, _)| known == name);
     for (effect, block) in library.effects.iter().zip(&library.blocks) {
@@ -104,23 +108,98 @@ pub(super) fn rivals(
             }
         }
     }
-    let count = rivals.len().max(1) as f64;
-    let blocks = (0..rivals.len())
-        .map(|k| Block {
-            start: library.columns + k * FUNCTIONS,
-            len: FUNCTIONS,
+    // Each is as probable as every other one. What joints do by each other adds to that, all others of one joint
+    // together as much as one rival.
+    let each = UNKNOWN / rivals.len().max(1) as f64;
+    let mut shares = vec![each; rivals.len()];
+    for (rival, own, among) in of_other_joints(measurements, covariates, library, linear) {
+        rivals.push(rival);
+        columns.push(own);
+        shares.push(each / among as f64);
+    }
+    let mut start = library.columns;
+    let blocks = columns
+        .iter()
+        .zip(shares)
+        .map(|(own, share)| {
+            start += own.len();
+            (start - own.len(), own.len(), share)
+        })
+        .map(|(start, len, share)| Block {
+            start,
+            len,
             kind: None,
             is_family: false,
             is_of_all: false,
             is_one_sided: false,
             grows_sideways: false,
             name: library.names.len(),
-            log_prior: (UNKNOWN / count).ln(),
+            log_prior: share.ln(),
         })
         .collect();
     let lines = linear.lines.nrows();
+    let columns = columns.concat();
     let matrix = DMatrix::from_fn(lines, columns.len(), |line, column| columns[column][line]);
     (rivals, blocks, matrix)
+}
+
+/// Of an arm that is measured from outside: the turn of each joint by how far it came (a joint that remembers), and by
+/// the angle of another one (what a cable pulls at). With each, how many of its sort the joint has.
+fn of_other_joints(
+    measurements: &Measurements,
+    covariates: &Covariates,
+    library: &Library,
+    linear: &Linear,
+) -> Vec<(Rival, Vec<Vec<f64>>, usize)> {
+    if !measurements.has(What::Pose) && !measurements.has(What::OrientedPose) {
+        return vec![];
+    }
+    let arm = measurements.apparatuses.iter().find_map(|apparatus| apparatus.arm.as_ref());
+    let titles: Vec<&str> =
+        arm.map_or(vec![], |arm| arm.parts.iter().map(|part| part.title.as_str()).collect());
+    let came = came(measurements);
+    let mut found = vec![];
+    for (effect, block) in library.effects.iter().zip(&library.blocks) {
+        if effect.kind != Kind::JointZero || effect.is_of_every_site() {
+            continue;
+        }
+        let title = effect.title.split(':').next().unwrap_or_default();
+        let Some(own) = titles.iter().position(|known| *known == title) else { continue };
+        let base = base(measurements, linear, &Moved::Column(linear.gauge + block.start));
+        let mut add = |on: String, value: &dyn Fn(usize) -> Option<f64>, count: usize, among: usize| {
+            if let Some(columns) = functions(linear, covariates, &base, value, None, count) {
+                found.push((Rival { of: format!("turn of {title}"), on }, columns, among));
+            }
+        };
+        let way = |row: usize| came[row].as_ref().and_then(|turned| turned.get(own)).copied();
+        add(format!("way that {title} came"), &way, FUNCTIONS, 1);
+        for (other, name) in titles.iter().enumerate().filter(|(other, _)| *other != own) {
+            let angle = |row: usize| measurements.rows[row].angles_rad().get(other).copied();
+            add(format!("angle of {name}"), &angle, FUNCTIONS_OF_ANOTHER, titles.len() - 1);
+        }
+    }
+    found
+}
+
+/// How far each joint turned since the row before it in time, by rows, rad; `None` where that row is not there.
+fn came(measurements: &Measurements) -> Vec<Option<Vec<f64>>> {
+    let rows = &measurements.rows;
+    let mut order: Vec<usize> = (0..rows.len()).collect();
+    order.sort_by(|&a, &b| {
+        let when = |i: usize| rows[i].t_secs.unwrap_or_default();
+        let by_time = when(a).total_cmp(&when(b));
+        rows[a].session.cmp(&rows[b].session).then(by_time).then(rows[a].row.cmp(&rows[b].row))
+    });
+    let mut came = vec![None; rows.len()];
+    for pair in order.windows(2) {
+        let (before, now) = (&rows[pair[0]], &rows[pair[1]]);
+        let is_next = before.session == now.session && before.row.abs_diff(now.row) == 1;
+        if is_next && before.what.is_placed() && now.what.is_placed() {
+            let turned = now.angles_rad().iter().zip(before.angles_rad()).map(|(now, then)| now - then);
+            came[pair[1]] = Some(turned.collect());
+        }
+    }
+    came
 }
 
 const EYES: [&str; 6] = [
@@ -144,15 +223,16 @@ fn base(measurements: &Measurements, linear: &Linear, moved: &Moved) -> Vec<f64>
     }
 }
 
-/// Cosines of the covariate over its range, times what moves. `None` when too few rows know it.
+/// Cosines of a covariate (by rows) over its range, so many of them, times what moves. `None` when too few rows know it.
 fn functions(
     linear: &Linear,
     covariates: &Covariates,
     base: &[f64],
-    covariate: usize,
+    of_row: &dyn Fn(usize) -> Option<f64>,
     sided: Option<usize>,
+    count: usize,
 ) -> Option<Vec<Vec<f64>>> {
-    let value = |line: usize| covariates.values[linear.row[line]][covariate];
+    let value = |line: usize| of_row(linear.row[line]);
     let known: Vec<f64> = (0..base.len()).filter_map(value).collect();
     let (low, high) = known.iter().fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(*v), high.max(*v)));
     let mut distinct = known.clone();
@@ -163,7 +243,7 @@ fn functions(
     }
     let side =
         |line: usize| sided.map_or(1.0, |sided| covariates.values[linear.row[line]][sided].unwrap_or(0.0));
-    let columns = (0..FUNCTIONS).map(|k| {
+    let columns = (0..count).map(|k| {
         (0..base.len())
             .map(|line| {
                 let Some(value) = value(line) else { return 0.0 };

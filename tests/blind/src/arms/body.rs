@@ -238,7 +238,7 @@ impl<'a> Body<'a> {
             at *= Translation3::from(way * (1.0 - gone));
             at *= place.rotation;
             at = turned(at, &|seat| seat == Seat::Before(j));
-            at *= UnitQuaternion::from_scaled_axis(part.axis * angles[j]);
+            at *= part.moved(angles[j]);
             at = turned(at, &|seat| seat == Seat::Behind(j));
             centers.push(at * Point3::from(part.center_m));
         }
@@ -265,6 +265,7 @@ mod tests {
             axis: Vector3::y(),
             center_m: Vector3::zeros(),
             mass_kg,
+            slides: false,
         };
         let robot =
             Robot { parts: vec![part(0.0, 0.0), part(0.5, 0.0)], marker: (Vector3::zeros(), [0.0; 3]) };
@@ -305,6 +306,7 @@ mod tests {
                 axis: Vector3::z(),
                 center_m: Vector3::zeros(),
                 mass_kg: 0.0,
+                slides: false,
             }],
             marker: (Vector3::x(), [0.0; 3]),
         };

@@ -35,10 +35,26 @@ pub fn recipes(cases: usize, seed: u64) -> Vec<Wish<Kind>> {
 /// # Errors
 /// When nothing can be hidden.
 pub fn make(wish: &Wish<Kind>) -> Result<Case, BlindError> {
+    Ok(made(wish)?.case)
+}
+
+/// A case with the arm itself, which can be measured again.
+pub(super) struct Made {
+    pub case: Case,
+    pub setup: Setup,
+    pub secrets: Vec<Secret>,
+    pub random: StdRng,
+}
+
+/// Makes a case and keeps the arm.
+///
+/// # Errors
+/// As [`make`].
+pub(super) fn made(wish: &Wish<Kind>) -> Result<Made, BlindError> {
     hide::make_or_smaller(wish, make_one)
 }
 
-fn make_one(wish: &Wish<Kind>) -> Result<Case, BlindError> {
+fn make_one(wish: &Wish<Kind>) -> Result<Made, BlindError> {
     let mut random = StdRng::seed_from_u64(wish.seed);
     let setup = Setup::drawn(wish.plan, wish.repeated, &mut random);
     let bare = setup.measure(&[], &setup.visits, Some(&mut random));
@@ -64,11 +80,14 @@ fn make_one(wish: &Wish<Kind>) -> Result<Case, BlindError> {
         rows: met.len(),
         cells: setup.cells.len(),
     };
-    Ok(Case {
-        session: session(&setup, &met)?,
-        files: vec![(DESCRIPTION.to_owned(), setup.robot.urdf())],
-        answer,
-    })
+    let slides = setup.robot.slides();
+    let case = Case { session: session(&setup, &met)?, files: files(&setup), slides, answer };
+    Ok(Made { case, setup, secrets: all, random })
+}
+
+/// What lies beside a session's tables.
+pub(super) fn files(setup: &Setup) -> Vec<(String, String)> {
+    vec![(DESCRIPTION.to_owned(), setup.robot.urdf())]
 }
 
 /// Links that weigh other than described, by the names of the command line.
@@ -84,7 +103,7 @@ fn masses(setup: &Setup) -> Vec<String> {
         .collect()
 }
 
-fn session(setup: &Setup, met: &[Met]) -> Result<Session, BlindError> {
+pub(super) fn session(setup: &Setup, met: &[Met]) -> Result<Session, BlindError> {
     let joints = setup.robot.joints();
     let rows: Vec<_> = met.iter().map(|met| setup.row(met)).collect();
     // Keys of poses stand in sections of their own, as the format has them.
@@ -120,6 +139,17 @@ impl Scene for Maker<'_> {
         let joint = if kind.is_of_joint() { random.random_range(0..self.setup.robot.len()) } else { 0 };
         let is_beside = |s: &Secret| s.kind == kind && (s.joint == joint || !kind.is_of_joint());
         if taken.iter().any(is_beside) {
+            return None;
+        }
+        // What slides has less that can be wrong, and no cable of another joint goes there.
+        let parts = &self.setup.robot.parts;
+        let from = match kind {
+            Kind::JointCoupling => joint.checked_sub(1),
+            Kind::FarCable => Some((joint + 2) % parts.len()),
+            _ => None,
+        };
+        let slides = parts[joint].slides && !kind.is_of_slides();
+        if slides || from.is_some_and(|from| parts[from].slides) {
             return None;
         }
         // A cable or a link comes from the joint before, and has a length.
@@ -177,7 +207,10 @@ mod tests {
             // The zero of the first joint, and how its axis stands, are the frame's.
             assert_eq!(maker.size(&secret(Kind::JointZero, 0)), None, "{seed}");
             assert_eq!(maker.size(&secret(Kind::AxisSkew, 0)), None, "{seed}");
-            assert!(maker.size(&secret(Kind::JointZero, 1)).is_some(), "{seed}");
+            // A slide along the axis of the first joint, or a turn about the way of a first slide, is the frame's, too.
+            if !setup.robot.parts[..2].iter().any(|part| part.slides) {
+                assert!(maker.size(&secret(Kind::JointZero, 1)).is_some(), "{seed}");
+            }
             assert!(maker.size(&secret(Kind::JointScale, 0)).is_some(), "{seed}");
             // A marker that was mounted anew hides the zero of the last joint.
             let of_last = maker.size(&secret(Kind::JointZero, last));

@@ -11,6 +11,10 @@ use rand::rngs::StdRng;
 pub const TIP: &str = "marker";
 /// Joints turn so far to either side, rad.
 pub const RANGE_RAD: f64 = 2.6;
+/// What slides goes so far where what turns goes a radian, m.
+const SLIDE_M: f64 = 0.15;
+/// One arm in so many has a joint that slides.
+const SLIDING: f64 = 0.2;
 /// Axes that are parallel stand at least so far apart, m: else they would be one.
 const LEAST_APART_M: f64 = 0.06;
 
@@ -27,12 +31,28 @@ pub struct Part {
     pub center_m: Vector3<f64>,
     /// Its mass, kg.
     pub mass_kg: f64,
+    /// The joint slides along its axis: what is an angle of others is a length, m.
+    pub slides: bool,
 }
 
 impl Part {
     /// The joint in the link before, at angle zero.
     pub fn place(&self) -> Isometry3<f64> {
         placed(&self.shift_m, &self.turn_rad)
+    }
+
+    /// What the joint does when it stands here (rad, or m of what slides).
+    pub fn moved(&self, to: f64) -> Isometry3<f64> {
+        if self.slides {
+            Isometry3::from_parts(Translation3::from(self.axis * to), UnitQuaternion::identity())
+        } else {
+            Isometry3::from_parts(Translation3::identity(), UnitQuaternion::from_scaled_axis(self.axis * to))
+        }
+    }
+
+    /// How far it goes where a joint that turns goes a radian: rad, or m of what slides.
+    pub fn stroke(&self) -> f64 {
+        if self.slides { SLIDE_M } else { 1.0 }
     }
 }
 
@@ -64,6 +84,11 @@ impl Robot {
                 parts.push(part);
             }
         }
+        // By chance of its own, so that arms without are as they would be if none had any. Wrists turn.
+        let mut other = random.clone();
+        if other.random_bool(SLIDING) {
+            parts[other.random_range(0..joints - 2)].slides = true;
+        }
         let mut within = |low: f64, high: f64| random.random_range(low..high);
         let shift_m = Vector3::new(within(0.04, 0.1), within(-0.04, 0.04), within(0.03, 0.12));
         Self { parts, marker: (shift_m, [within(-PI, PI), within(-1.2, 1.2), within(-PI, PI)]) }
@@ -77,6 +102,12 @@ impl Robot {
     /// Names of the joints.
     pub fn joints(&self) -> Vec<String> {
         (1..=self.len()).map(|number| format!("joint_{number}")).collect()
+    }
+
+    /// Names of those that slide.
+    pub fn slides(&self) -> Vec<String> {
+        let all = self.joints().into_iter().zip(&self.parts);
+        all.filter(|(_, part)| part.slides).map(|(joint, _)| joint).collect()
     }
 
     /// Names of the links that they carry.
@@ -98,12 +129,15 @@ impl Robot {
             let _ = writeln!(
                 text,
                 r#"<link name="{link}"><inertial><origin xyz="{}"/><mass value="{}"/><inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/></inertial></link>
-<joint name="{joint}" type="revolute"><parent link="{parent}"/><child link="{link}"/><origin xyz="{}" rpy="{}"/><axis xyz="{}"/><limit lower="-{RANGE_RAD}" upper="{RANGE_RAD}" effort="100" velocity="2"/></joint>"#,
+<joint name="{joint}" type="{}"><parent link="{parent}"/><child link="{link}"/><origin xyz="{}" rpy="{}"/><axis xyz="{}"/><limit lower="-{}" upper="{}" effort="100" velocity="2"/></joint>"#,
                 three(part.center_m.as_slice()),
                 part.mass_kg,
+                if part.slides { "prismatic" } else { "revolute" },
                 three(part.shift_m.as_slice()),
                 three(&part.turn_rad),
                 three(part.axis.as_slice()),
+                RANGE_RAD * part.stroke(),
+                RANGE_RAD * part.stroke(),
             );
             parent = link;
         }
@@ -141,7 +175,7 @@ fn part(j: usize, joints: usize, size: f64, random: &mut StdRng) -> Part {
         Vector3::from_fn(|_, _| if random.random_bool(0.3) { random.random_range(-0.06..0.06) } else { 0.0 });
     let mass_kg = size * random.random_range(0.5..2.0) * if j + 2 < joints { 1.0 } else { 0.4 };
     let center_m = Vector3::from_fn(|_, _| random.random_range(-0.05..0.12) * size);
-    Part { shift_m, turn_rad, axis, center_m, mass_kg }
+    Part { shift_m, turn_rad, axis, center_m, mass_kg, slides: false }
 }
 
 /// Whether two joints that follow each other are no single one.
@@ -150,4 +184,27 @@ fn differ(before: &Part, part: &Part) -> bool {
     let along = before.axis.dot(&axis).abs();
     let apart_m = before.axis.cross(&part.shift_m).norm();
     along < 0.9 || apart_m > LEAST_APART_M
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng;
+
+    use super::*;
+
+    #[test]
+    fn one_arm_in_five_has_a_joint_that_slides_and_its_description_says_so() {
+        let robots: Vec<Robot> =
+            (0..100).map(|seed| Robot::drawn(&mut StdRng::seed_from_u64(seed))).collect();
+        let sliding: Vec<&Robot> = robots.iter().filter(|robot| !robot.slides().is_empty()).collect();
+        assert!((10..=30).contains(&sliding.len()), "{}", sliding.len());
+        for robot in sliding {
+            assert_eq!(robot.slides().len(), 1);
+            assert_eq!(robot.urdf().matches("prismatic").count(), 1);
+            let part = robot.parts.iter().find(|part| part.slides).expect("one");
+            let moved = part.moved(0.1);
+            assert!((moved.translation.vector - part.axis * 0.1).norm() < 1e-12);
+            assert!(moved.rotation.angle() < 1e-12);
+        }
+    }
 }

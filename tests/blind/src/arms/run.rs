@@ -15,11 +15,11 @@ use crate::heat;
 use crate::physics::normal;
 
 /// From one pose to the next, s.
-const PACE_S: f64 = 7.0;
+pub(super) const PACE_S: f64 = 7.0;
 /// The robot has been on for so long at the first pose, s.
 const START_S: f64 = 30.0;
 /// Poses are drawn so far to either side of zero, rad.
-const SWING_RAD: f64 = 1.7;
+pub(super) const SWING_RAD: f64 = 1.7;
 /// Friction stops servos short of their goals by at most this, and encoders see it, rad.
 const SHORT_RAD: f64 = 6e-4;
 /// Spread of a joint about what its encoder says, rad.
@@ -33,11 +33,13 @@ const PAYLOAD_KG: f64 = 0.5;
 #[derive(Clone, Debug)]
 pub struct Cell {
     pub goals_rad: Vec<f64>,
-    /// Speed at the end of the motion, rad/s of each joint.
+    /// Speed at the end of the motion, rad/s of each joint (m/s of what slides).
     pub speed_rad_s: Vec<f64>,
     /// Side from which all joints arrive; none: wherever they were.
     pub side: Option<f64>,
     pub payload_kg: f64,
+    /// Encoders are read once more when the joints have arrived.
+    pub later: bool,
     pub set: String,
 }
 
@@ -48,9 +50,12 @@ pub struct Visit {
     /// The cell before.
     pub from: usize,
     pub t_secs: f64,
+    /// Share of the first session that is over; more than one in a later one.
+    pub over: f64,
 }
 
 /// All that is the same whether something is hidden or not.
+#[derive(Clone)]
 pub struct Setup {
     pub robot: Robot,
     pub cells: Vec<Cell>,
@@ -64,6 +69,10 @@ pub struct Setup {
     /// Noise of the tracker, m and rad.
     pub noise: [f64; 2],
     pub is_repeated: bool,
+    /// Before the names of repeated poses: those of another session are others.
+    pub label: String,
+    /// The first session is over, s.
+    pub end_s: f64,
 }
 
 /// What one visit gives: what was sent, read and measured.
@@ -88,8 +97,12 @@ impl Setup {
         for pose in 0..poses {
             let mut drawn =
                 |low: f64, high: f64| (0..robot.len()).map(|_| random.random_range(low..high)).collect();
-            let (goals_rad, speed_rad_s): (Vec<f64>, Vec<f64>) =
+            let (mut goals_rad, mut speed_rad_s): (Vec<f64>, Vec<f64>) =
                 (drawn(-SWING_RAD, SWING_RAD), drawn(0.2, 1.0));
+            for (j, part) in robot.parts.iter().enumerate() {
+                goals_rad[j] *= part.stroke();
+                speed_rad_s[j] *= part.stroke();
+            }
             let payload_kg = if is_rich && random.random_bool(0.3) { PAYLOAD_KG } else { 0.0 };
             let set = format!("part {}", 1 + pose % 5);
             let sides: &[Option<f64>] = if is_rich { &[Some(1.0), Some(-1.0)] } else { &[None] };
@@ -98,10 +111,13 @@ impl Setup {
                 speed_rad_s: speed_rad_s.clone(),
                 side: *side,
                 payload_kg,
+                later: false,
                 set: set.clone(),
             }));
         }
-        let visits = visits(cells.len(), if is_repeated { 3 } else { 1 }, random);
+        let mut visits = visits(cells.len(), if is_repeated { 3 } else { 1 }, START_S, random);
+        let end_s = visits.last().map_or(1.0, |visit| visit.t_secs);
+        visits.iter_mut().for_each(|visit| visit.over = visit.t_secs / end_s);
         let mut within = |most: f64| random.random_range(-most..most);
         let external_from_base = Isometry3::from_parts(
             Translation3::new(within(2.0), within(2.0), within(1.0)),
@@ -114,13 +130,15 @@ impl Setup {
         let mass_factors = robot.parts.iter().map(|_| random.random_range(0.85..1.2)).collect();
         Self {
             cells,
-            visits,
             mass_factors,
             oriented: random.random_bool(0.5),
             unknown_mount: random.random_bool(0.5).then_some(beside),
             external_from_base,
             noise: [random.random_range(1.5e-4..6e-4), random.random_range(4e-4..1.5e-3)],
             is_repeated,
+            label: String::new(),
+            end_s,
+            visits,
             robot,
         }
     }
@@ -133,7 +151,6 @@ impl Setup {
     /// All visits, or those that are given, with these secrets.
     pub fn measure(&self, secrets: &[Secret], visits: &[Visit], mut chance: Chance<'_>) -> Vec<Met> {
         let body = Body::new(&self.robot, secrets, &self.mass_factors, &self.mount());
-        let end_s = self.visits.last().map_or(1.0, |visit| visit.t_secs);
         visits
             .iter()
             .map(|visit| {
@@ -147,22 +164,24 @@ impl Setup {
                     .collect();
                 let early_s: f64 = secrets
                     .iter()
-                    .filter(|secret| secret.kind == Kind::EarlyLog)
+                    .filter(|secret| secret.kind == Kind::EarlyLog && !cell.later)
                     .map(|secret| secret.amount)
                     .sum();
                 let (mut motors_rad, mut encoder_rad) = (vec![], vec![]);
                 for (j, way) in way.iter().enumerate() {
-                    let short_rad = SHORT_RAD * (0.5 + 0.25 * draw()).clamp(0.0, 1.0);
+                    let stroke = self.robot.parts[j].stroke();
+                    let short_rad = stroke * SHORT_RAD * (0.5 + 0.25 * draw()).clamp(0.0, 1.0);
                     let stands = cell.goals_rad[j] - way * short_rad;
-                    motors_rad.push(stands + JOINT_RAD * draw());
+                    motors_rad.push(stands + stroke * JOINT_RAD * draw());
                     let left_rad = early_s * cell.speed_rad_s[j] * (1.0 + 0.08 * draw());
-                    encoder_rad.push(((stands - way * left_rad) / TICK_RAD).round() * TICK_RAD);
+                    let tick_rad = stroke * TICK_RAD;
+                    encoder_rad.push(((stands - way * left_rad) / tick_rad).round() * tick_rad);
                 }
                 let moment = Moment {
                     motors_rad,
                     way,
                     from_rad: from.goals_rad.clone(),
-                    over: visit.t_secs / end_s,
+                    over: visit.over,
                     warm: heat::after(visit.t_secs).1,
                     payload_kg: cell.payload_kg,
                 };
@@ -190,10 +209,12 @@ impl Setup {
 
     /// The marker as described, mounted as it is.
     fn described(&self, angles_rad: &[f64]) -> Isometry3<f64> {
-        let last =
-            self.robot.parts.iter().zip(angles_rad).fold(Isometry3::identity(), |at, (part, angle)| {
-                at * part.place() * UnitQuaternion::from_scaled_axis(part.axis * *angle)
-            });
+        let last = self
+            .robot
+            .parts
+            .iter()
+            .zip(angles_rad)
+            .fold(Isometry3::identity(), |at, (part, angle)| at * part.place() * part.moved(*angle));
         last * self.robot.last_from_marker() * self.mount()
     }
 
@@ -247,7 +268,7 @@ impl Setup {
             orientation: self.oriented.then_some(turn),
             payload_kg: Some(cell.payload_kg),
             t_secs: Some((met.t_secs * 10.0).round() / 10.0),
-            group: self.is_repeated.then(|| format!("pose {}", met.cell + 1)),
+            group: self.is_repeated.then(|| format!("{}pose {}", self.label, met.cell + 1)),
             approach: cell.side.map(|side| if side > 0.0 { "plus" } else { "minus" }.to_owned()),
             set: Some(cell.set.clone()),
             ..PoseRow::default()
@@ -255,15 +276,16 @@ impl Setup {
     }
 }
 
-/// An order drawn by chance, so that time goes with nothing else.
-fn visits(cells: usize, repeats: usize, random: &mut StdRng) -> Vec<Visit> {
+/// An order drawn by chance, so that time goes with nothing else, from a moment on; how much of the session is over is
+/// not known yet.
+pub(super) fn visits(cells: usize, repeats: usize, start_s: f64, random: &mut StdRng) -> Vec<Visit> {
     let mut order: Vec<usize> = (0..cells).flat_map(|cell| vec![cell; repeats]).collect();
     order.shuffle(random);
-    let mut t_secs = START_S;
+    let mut t_secs = start_s;
     (0..order.len())
         .map(|i| {
             t_secs += PACE_S * random.random_range(0.8..1.2);
-            Visit { cell: order[i], from: order[i.saturating_sub(1)], t_secs }
+            Visit { cell: order[i], from: order[i.saturating_sub(1)], t_secs, over: 0.0 }
         })
         .collect()
 }

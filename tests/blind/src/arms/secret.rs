@@ -74,6 +74,13 @@ impl Kind {
         !matches!(self, Self::TorsoLean | Self::TipOffset | Self::EarlyLog | Self::Tripod)
     }
 
+    /// Whether what slides has it: nothing turns there, and no load is borne about its axis.
+    pub fn is_of_slides(self) -> bool {
+        use Kind::{AxisSkew, Backlash, JointScale, JointZero, LinkBending, LinkLength, SidewaysGive};
+        let any = [AxisSkew, Backlash, JointScale, JointZero, LinkBending, LinkLength, SidewaysGive];
+        any.contains(&self) || !self.is_of_joint()
+    }
+
     /// Whether its amount has no sign.
     pub fn is_positive(self) -> bool {
         use Kind::{
@@ -167,6 +174,10 @@ impl Secret {
         (self.joint + 2) % joints
     }
 
+    fn slides(&self, robot: &Robot) -> bool {
+        robot.parts.get(self.joint).is_some_and(|part| part.slides)
+    }
+
     /// As the command line would say it.
     pub fn told(&self, robot: &Robot, size_sigmas: f64) -> Hidden {
         let id: &str = self.kind.into();
@@ -187,11 +198,12 @@ impl Secret {
             names.iter().map(|name| (*name).to_owned()).zip(values.iter().copied()).collect()
         };
         match self.kind {
-            Kind::JointZero => one("offset_rad"),
+            Kind::JointZero => one(if self.slides(robot) { "offset_m" } else { "offset_rad" }),
             Kind::JointScale => one("scale"),
             Kind::JointEccentricity => {
                 many(&["amplitude_rad", "phase_rad"], &[self.amount.abs(), self.wave_phase_rad()])
             }
+            Kind::Backlash if self.slides(robot) => one("width_m"),
             Kind::Backlash | Kind::GravityBacklash => one("width_rad"),
             Kind::JointSag | Kind::SidewaysGive => one("compliance_rad_per_nm"),
             Kind::LinkBending => one("compliance_m_per_n"),

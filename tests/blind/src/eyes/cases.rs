@@ -72,7 +72,7 @@ fn make_one(head: &Head, wish: &Wish<Kind>) -> Result<Case, BlindError> {
         ..Manifest::of_rig(RIG, jiff::Timestamp::UNIX_EPOCH)
     });
     written.localizations = Some(LocalizationTable::from_rows(joints, &rows));
-    Ok(Case { session: written, files: vec![], answer })
+    Ok(Case { session: written, files: vec![], slides: vec![], answer })
 }
 
 struct Maker<'a> {
