@@ -191,6 +191,16 @@ impl AddDiagonal for DMatrix<f64> {
     }
 }
 
+/// A parameter that is never negative.
+struct OneSided {
+    /// Its place in the set.
+    place: usize,
+    mean: f64,
+    variance: f64,
+    /// What being never negative adds to the evidence.
+    adds: f64,
+}
+
 /// Of a set: (1 + A)⁻¹, and the means of its parameters.
 type Solved = (DMatrix<f64>, DVector<f64>);
 
@@ -201,8 +211,8 @@ pub(super) struct Given<'a> {
     solved: Option<Solved>,
     /// (1 + A)⁻¹A with all columns: only where more blocks are tried beside the set.
     following: OnceCell<DMatrix<f64>>,
-    /// Those of its parameters that are never negative: place in the set, mean, variance.
-    one_sided: Vec<(usize, f64, f64)>,
+    /// Those of its parameters that are never negative.
+    one_sided: Vec<OneSided>,
     /// Evidence of the set.
     pub log_evidence: f64,
 }
@@ -228,8 +238,12 @@ impl Field {
         let inverse = cholesky.inverse();
         let means = &inverse * &b;
         let places = (0..columns.len()).filter(|&k| self.one_sided[columns[k]]);
-        let one_sided: Vec<(usize, f64, f64)> = places.map(|k| (k, means[k], inverse[(k, k)])).collect();
-        let halves: f64 = one_sided.iter().map(|(_, mean, var)| ln_not_negative(*mean, *var)).sum();
+        let of_place = |place: usize| {
+            let (mean, variance) = (means[place], inverse[(place, place)]);
+            OneSided { place, mean, variance, adds: ln_not_negative(mean, variance) }
+        };
+        let one_sided: Vec<OneSided> = places.map(of_place).collect();
+        let halves: f64 = one_sided.iter().map(|one| one.adds).sum();
         let log_evidence = self.constant + 0.5 * (b.dot(&means) - cholesky.ln_determinant()) + halves;
         Given { field: self, columns, solved: Some((inverse, means)), following, one_sided, log_evidence }
     }
@@ -250,7 +264,9 @@ impl Given<'_> {
             return 0.5 * (b * b / one - one.ln()) + own + self.halves_with(moved);
         }
         let at = block.start;
-        let mut own = DMatrix::from_fn(block.len, block.len, |r, c| self.rest(at + r, at + c));
+        // A Cholesky decomposition reads nothing above the diagonal.
+        let lower = |r: usize, c: usize| if r < c { 0.0 } else { self.rest(at + r, at + c) };
+        let mut own = DMatrix::from_fn(block.len, block.len, lower);
         own.fill_diagonal_add(1.0);
         let b = DVector::from_fn(block.len, |r, _| self.rest_b(at + r));
         let Some(own) = Cholesky::new(own) else { return f64::NEG_INFINITY };
@@ -286,9 +302,9 @@ impl Given<'_> {
     /// How the evidence of the set's one-sided parameters changes when another block moves their means back and
     /// widens their variances by so much.
     fn halves_with(&self, moved: impl Fn(usize) -> (f64, f64)) -> f64 {
-        let change = |&(k, mean, variance): &(usize, f64, f64)| {
-            let (back, wider) = moved(k);
-            ln_not_negative(mean - back, variance + wider) - ln_not_negative(mean, variance)
+        let change = |one: &OneSided| {
+            let (back, wider) = moved(one.place);
+            ln_not_negative(one.mean - back, one.variance + wider) - one.adds
         };
         self.one_sided.iter().map(change).sum()
     }
