@@ -38,7 +38,7 @@ impl Exchange {
         };
         // Also to who is not known: limp is what it is then.
         let id = slot.unit.id();
-        self.slots[i].in_hand = false;
+        (self.slots[i].in_hand, self.slots[i].held_goal) = (false, None);
         self.bus.await_owed(id)?;
         self.bus.write(id, register.address, &[0])?;
         self.read_block(i)?;
