@@ -130,6 +130,15 @@ pub fn click_containing(harness: &mut Harness<'_, PlumblineWindow>, words: &str)
     harness.run_steps(3);
 }
 
+/// A short press with the pointer, on whatever lies there.
+pub fn click_at(harness: &mut Harness<'_, PlumblineWindow>, at: egui::Pos2) {
+    harness.hover_at(at);
+    harness.run_steps(2);
+    harness.drag_at(at);
+    harness.drop_at(at);
+    harness.run_steps(3);
+}
+
 /// Whether something has this label.
 pub fn shows(harness: &Harness<'_, PlumblineWindow>, label: &str) -> bool {
     harness.query_all_by_label(label).next().is_some()

@@ -10,8 +10,10 @@ use plumbline_engine::gap::sample;
 use plumbline_engine::{Command, Correction, GapCommand, GapModel, TouchCommand, View};
 use plumbline_model::touch_plan::Purpose;
 
-use crate::fake::{Fake, click, says, shows};
-use crate::made_up_gap::{added, failed, found, nothing, proven, recorded, searching, stale, with};
+use crate::fake::{Fake, click, click_at, says, shows};
+use crate::made_up_gap::{
+    added, failed, found, found_without, nothing, proven, recorded, searching, stale, with,
+};
 
 fn on_gap() -> WindowSettings {
     WindowSettings { screen: Screen::Gap, ..WindowSettings::default() }
@@ -101,8 +103,36 @@ fn an_effect_can_be_left_out() {
     let (fake, mut window) = window_of(with(found(sample::named())));
     click(&mut window, "Name and add");
     click(&mut window, "Shoulder, forward: bracket gives way under load");
-    click(&mut window, "Add joint zero of the elbow to the model");
+    assert_eq!(asked(&fake), [GapCommand::LeaveOut { effect: 1, is_left_out: true }]);
+    fake.show(with(found_without(sample::named(), vec![1])));
+    window.run_steps(3);
+    // The big button adds what is ticked, too.
+    press_next(&mut window, "Add joint zero of the elbow to the model");
     assert_eq!(asked(&fake), [GapCommand::Add { effects: vec![0] }]);
+    fake.show(with(found_without(sample::named(), vec![0, 1])));
+    window.run_steps(3);
+    assert!(!says(&window, " to the model"), "nothing is ticked");
+    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Enter);
+    window.run_steps(3);
+    assert!(!asked(&fake).iter().any(|command| matches!(command, GapCommand::Add { .. })));
+}
+
+/// While the big button asks for an experiment, adding is in sight above it.
+#[test]
+fn what_is_one_of_several_names_can_be_added_without_scrolling() {
+    for size in [[1024.0, 700.0], [1440.0, 900.0]] {
+        let fake = Fake::over(with(found(sample::class())));
+        let mut window = fake.window_of_size(on_gap(), size);
+        click(&mut window, "Name and add");
+        let add: Vec<_> = window.query_all_by_label_contains(" to the model").collect();
+        let [add] = add.as_slice() else { panic!("{} buttons to add at {size:?}", add.len()) };
+        let (rect, [width, height]) = (add.rect(), size);
+        let tile = egui::Rect::from_min_max(egui::pos2(150.0, 100.0), egui::pos2(width, height - 55.0));
+        assert!(tile.contains_rect(rect), "{rect:?} at {size:?}");
+        // The pointer takes it: nothing lies on it.
+        click_at(&mut window, rect.center());
+        assert_eq!(asked(&fake), [GapCommand::Add { effects: vec![0] }], "at {size:?}");
+    }
 }
 
 #[test]

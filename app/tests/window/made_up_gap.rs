@@ -101,6 +101,7 @@ fn shown(finding: Finding, id: &str, model: &str) -> Arc<ShownFinding> {
         entry: entry(&finding, id, model),
         folders: recorded().chosen.to_vec(),
         added: vec![false; finding.effects.len()],
+        left_out: vec![],
         finding,
     })
 }
@@ -114,6 +115,13 @@ pub fn found(finding: Finding) -> GapView {
         shown: Some(shown),
         ..recorded()
     }
+}
+
+/// A finding of which the operator left effects out.
+pub fn found_without(finding: Finding, left_out: Vec<usize>) -> GapView {
+    let view = found(finding);
+    let shown = view.shown.as_deref().map(|shown| Arc::new(ShownFinding { left_out, ..shown.clone() }));
+    GapView { shown, ..view }
 }
 
 /// A finding of a session that changed since.

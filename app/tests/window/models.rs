@@ -10,7 +10,7 @@ use plumbline_engine::models::Method;
 use plumbline_engine::view::{JobState, JobView, ModelError, ModelsView, StepState, TablesView};
 use plumbline_engine::{Command, GraspTable, JobId, ModelsCommand, TablesCommand, TouchCommand, View};
 
-use crate::fake::{Fake, click, says, shows};
+use crate::fake::{Fake, click, click_at, says, shows};
 use crate::made_up::everything;
 use crate::made_up_models::{in_use, recorded, sessions, tables, trained, training, with};
 
@@ -41,15 +41,6 @@ fn on_comparison(fake: &Fake) -> Harness<'static, PlumblineWindow> {
     let mut window = fake.window_of_size(on_models(), TALL);
     click(&mut window, "Models compared");
     window
-}
-
-/// A short press with the pointer.
-fn click_at(window: &mut Harness<'_, PlumblineWindow>, at: Pos2) {
-    window.hover_at(at);
-    window.run_steps(2);
-    window.drag_at(at);
-    window.drop_at(at);
-    window.run_steps(3);
 }
 
 #[test]

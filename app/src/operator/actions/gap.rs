@@ -23,7 +23,7 @@ pub enum GapAction {
     CompareInUse,
     /// Looks for the gap.
     Find,
-    /// Adds all effects of the shown finding that can be added.
+    /// Adds all effects of the shown finding that can be added and are not left out.
     Add,
     /// Corrects the arm by all usual effects, although none has a name.
     Size,
@@ -92,7 +92,8 @@ impl GapAction {
             Self::Find => when(!gap.chosen.is_empty(), "no session is chosen"),
             Self::Add => match &gap.stale {
                 Some(why) => Some(why.clone().into()),
-                None => when(!gap.addable().is_empty(), "nothing was found that could be added"),
+                None if gap.addable().is_empty() => Some("nothing was found that could be added".into()),
+                None => when(!gap.wanted().is_empty(), "all that was found is left out: tick what to add"),
             },
             Self::Size => when(gap.sizes_arm, "nothing was found in touches that could correct the arm"),
             Self::Prove if gap.model.effects.is_empty() => Some("no effect is in the model".into()),
@@ -114,7 +115,7 @@ impl GapAction {
                 Self::CompareNominal => GapCommand::CompareWith(GapModel::Nominal),
                 Self::CompareInUse => GapCommand::CompareWith(GapModel::InUse),
                 Self::Find => GapCommand::Find { seed: 1 },
-                Self::Add => GapCommand::Add { effects: view.gap.addable() },
+                Self::Add => GapCommand::Add { effects: view.gap.wanted() },
                 Self::Size => GapCommand::Add { effects: vec![] },
                 Self::Delete => GapCommand::Delete { id: view.gap.shown.as_ref()?.entry.id.clone() },
                 Self::Undo => GapCommand::Undo,

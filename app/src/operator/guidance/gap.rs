@@ -51,7 +51,7 @@ fn next(gap: &GapView) -> Guidance {
 fn found(view: &View, shown: &ShownFinding) -> Guidance {
     let finding = &shown.finding;
     let guidance = say(finding.sentence.clone());
-    let addable = view.gap.addable();
+    let (addable, wanted) = (view.gap.addable(), view.gap.wanted());
     let experiment = GapAction::NextExperiment.refusal(view).is_none();
     let unsure = finding.effects.iter().any(|effect| effect.probability < SURE);
     let touch = |guidance: Guidance| guidance.then(touch_label(view), Action::Gap(GapAction::NextExperiment));
@@ -61,7 +61,7 @@ fn found(view: &View, shown: &ShownFinding) -> Guidance {
         Verdict::NotInLibrary if experiment => touch(guidance.warn()),
         Verdict::NotInLibrary => guidance.warn(),
         Verdict::Class if unsure && experiment && !addable.is_empty() => touch(guidance),
-        _ if !addable.is_empty() => guidance.then(add_label(view, &addable), Action::Gap(GapAction::Add)),
+        _ if !wanted.is_empty() => guidance.then(add_label(view, &wanted), Action::Gap(GapAction::Add)),
         _ if shown.added.iter().any(|added| *added) => added(view, shown, experiment),
         _ if experiment => touch(guidance),
         _ => guidance,

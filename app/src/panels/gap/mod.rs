@@ -26,7 +26,6 @@ pub fn show(ui: &mut Ui, pane: Pane, cx: &mut PanelContext<'_>) {
     let id = cx.view.gap.shown.as_ref().map(|shown| shown.entry.id.clone()).unwrap_or_default();
     if cx.state.gap.of != id {
         cx.state.gap.of = id;
-        cx.state.gap.left_out.clear();
         cx.state.gap.covariate = None;
     }
     match pane {

@@ -1,6 +1,6 @@
 //! What is missing, by name: the verdict, and cards of the effects that were found.
 
-use egui::{Checkbox, Frame, Margin, RichText, ScrollArea, Ui};
+use egui::{Checkbox, Frame, Margin, Panel, RichText, ScrollArea, Ui};
 use plumbline_engine::view::{ShownFinding, Subject};
 use plumbline_engine::{GapCommand, View};
 use plumbline_widgets::format;
@@ -22,6 +22,7 @@ use crate::panels::{PanelContext, padded};
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let what = "Choose sessions, then look for what the model does not have: a joint's zero, play, something that gives way. Nothing moves.";
     let Some(shown) = finding(ui, cx, what) else { return };
+    offer(ui, cx);
     padded(ui, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             state(ui, cx.view);
@@ -31,7 +32,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             cards(ui, cx, &shown);
             unexplained(ui, &shown.finding);
             ui.add_space(space::S);
-            add(ui, cx, &shown);
+            model(ui, cx, &shown);
         });
     });
 }
@@ -159,11 +160,10 @@ fn head(ui: &mut Ui, cx: &mut PanelContext<'_>, shown: &ShownFinding, i: usize) 
     let effect = &shown.finding.effects[i];
     let addable = cx.view.gap.addable();
     if addable.len() > 1 && addable.contains(&i) {
-        let left_out = &mut cx.state.gap.left_out;
-        let mut wanted = !left_out.contains(&i);
+        let mut wanted = !shown.left_out.contains(&i);
         let check = ui.add(Checkbox::new(&mut wanted, theme::strong(ui, &effect.title)));
         if check.on_hover_text("Whether it is added with the others").changed() {
-            if wanted { left_out.retain(|other| *other != i) } else { left_out.push(i) }
+            cx.outbox.send(GapCommand::LeaveOut { effect: i, is_left_out: !wanted });
         }
         return;
     }
@@ -217,26 +217,35 @@ fn unexplained(ui: &mut Ui, finding: &Finding) {
     }
 }
 
-/// What will change, and the button that does it.
-fn add(ui: &mut Ui, cx: &mut PanelContext<'_>, shown: &ShownFinding) {
+/// Adds what is ticked: at the foot, where it is seen however much is found, also while the big button offers
+/// an experiment.
+fn offer(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    if cx.view.gap.addable().is_empty() {
+        return;
+    }
+    let wanted = cx.view.gap.wanted();
+    let margin = Margin::symmetric(space::M as i8, space::S as i8);
+    Panel::bottom("gap offer").frame(Frame::new().inner_margin(margin)).resizable(false).show(ui, |ui| {
+        ui.horizontal_wrapped(|ui| {
+            let label = match wanted.is_empty() {
+                true => "Add what is ticked".to_owned(),
+                false => words::add_label(cx.view, &wanted),
+            };
+            action_button(ui, cx, GapAction::Add, &label);
+            ui.label(theme::small(ui, "Nothing moves; touches go elsewhere than before."));
+        });
+    });
+}
+
+/// What is in the model, and what can be made of it.
+fn model(ui: &mut Ui, cx: &mut PanelContext<'_>, shown: &ShownFinding) {
     let addable = cx.view.gap.addable();
-    let wanted: Vec<usize> = addable.iter().copied().filter(|i| !cx.state.gap.left_out.contains(i)).collect();
     theme::group_heading(ui, "The model");
     let in_use = format!("In use: {}.", cx.view.gap.model.name);
     ui.label(theme::weak(ui, in_use));
     if !addable.is_empty() {
-        let what = match wanted.len() {
-            0 => "Choose above what is added.".to_owned(),
-            _ => "Nothing moves. From then on all predictions, previews and targets of this robot use the corrected model; touches go elsewhere than before.".to_owned(),
-        };
+        let what = "Once effects are added, all predictions, previews and targets of this robot use the corrected model.";
         ui.label(theme::small(ui, what));
-        ui.horizontal_wrapped(|ui| {
-            let text = words::add_label(cx.view, &wanted);
-            let button = ui.add_enabled(!wanted.is_empty(), egui::Button::new(text));
-            if button.clicked() {
-                cx.outbox.send(GapCommand::Add { effects: wanted });
-            }
-        });
     } else if shown.added.iter().any(|added| *added) {
         ui.label(theme::small(
             ui,

@@ -18,9 +18,7 @@ pub struct GapPanels {
     pub along: Along,
     /// How the candidates are sorted.
     pub sort: Sort,
-    /// Effects of the shown finding that shall not be added, by place.
-    pub left_out: Vec<usize>,
-    /// The finding that `left_out` and `covariate` belong to.
+    /// The finding that `covariate` belongs to.
     pub(crate) of: String,
     /// Whether the search ran in the last frame.
     pub searching_seen: bool,

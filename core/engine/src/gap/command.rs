@@ -37,6 +37,13 @@ pub enum GapCommand {
         /// Its id.
         id: String,
     },
+    /// Whether an effect of the finding that is shown is left out of what is added.
+    LeaveOut {
+        /// By place in its list of effects.
+        effect: usize,
+        /// Whether it is.
+        is_left_out: bool,
+    },
     /// Adds effects of the finding that is shown to the model in use. Nothing moves.
     Add {
         /// By place in its list of effects; none: the arm is corrected without a name, where that helps.

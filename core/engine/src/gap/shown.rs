@@ -10,7 +10,7 @@ use plumbline_gap::Finding;
 use super::model;
 use super::store::Named;
 use super::view::{GapView, ShownFinding};
-use super::workflow::{GapAround, GapWorkflow, Seen};
+use super::workflow::{GapAround, GapWorkflow, LeftOut, Seen};
 use crate::ground::step::StepState;
 
 impl GapWorkflow {
@@ -35,10 +35,18 @@ impl GapWorkflow {
 
     /// Makes anew what is shown, after a change.
     pub(super) fn look(&mut self) {
+        if self.left_out.of != self.shown {
+            self.left_out = LeftOut { of: self.shown.clone(), effects: vec![] };
+        }
         let beside = self.beside.as_ref().and_then(|id| self.named(id));
         self.seen = Seen {
             entries: self.findings.iter().map(|named| named.entry()).collect(),
-            shown: self.shown_named().map(|named| Arc::new(self.shown_finding(named))),
+            shown: self.shown_named().map(|named| {
+                Arc::new(ShownFinding {
+                    left_out: self.left_out.effects.clone(),
+                    ..self.shown_finding(named)
+                })
+            }),
             beside: beside.map(|named| Arc::new(self.shown_finding(named))),
             model: self.model.as_ref().map(|model| model::view(model, &self.moved_m)).unwrap_or_default(),
             sizes_arm: self.sizes_arm(),
@@ -74,6 +82,7 @@ impl GapWorkflow {
             finding: finding.clone(),
             folders: named.kept.sessions.iter().map(|session| session.folder.clone()).collect(),
             added: finding.effects.iter().map(|e| in_model(&e.id, &e.site, &e.values)).collect(),
+            left_out: vec![],
         }
     }
 

@@ -121,6 +121,20 @@ fn what_was_found_is_there_after_a_restart_and_is_added_and_taken_back() {
     assert!(!view.model.history.is_empty(), "that it was there is not forgotten");
 }
 
+#[test]
+fn what_is_left_out_stays_so_until_another_finding_is_shown() {
+    let mut lab = Lab::new().with_finding();
+    let view = lab.tell(GapCommand::LeaveOut { effect: 0, is_left_out: true });
+    assert_eq!((view.addable(), view.wanted()), (vec![0, 1], vec![1]));
+    let view = lab.tell(GapCommand::LeaveOut { effect: 0, is_left_out: false });
+    assert_eq!(view.wanted(), [0, 1]);
+    lab.tell(GapCommand::LeaveOut { effect: 1, is_left_out: true });
+    let id = view.findings[0].id.clone();
+    assert_eq!(lab.tell(GapCommand::Show { id: id.clone() }).wanted(), [0], "it is the same finding");
+    let view = lab.tell(GapCommand::Delete { id });
+    assert!(view.shown.is_none() && view.wanted().is_empty());
+}
+
 /// A folder with what a lab keeps of one finding.
 fn copy_of(lab: &Lab) -> tempfile::TempDir {
     let copied = tempfile::tempdir().expect("temporary folder");

@@ -94,6 +94,8 @@ pub struct ShownFinding {
     pub folders: Vec<PathBuf>,
     /// Per effect, whether the model in use has it.
     pub added: Vec<bool>,
+    /// Effects that shall not be added, by place.
+    pub left_out: Vec<usize>,
 }
 
 /// What is in the model in use.
@@ -163,6 +165,12 @@ impl GapView {
             Some(shown) if self.stale.is_none() => shown.addable(),
             _ => vec![],
         }
+    }
+
+    /// Those of them that are not left out: what is added.
+    pub fn wanted(&self) -> Vec<usize> {
+        let Some(shown) = &self.shown else { return vec![] };
+        self.addable().into_iter().filter(|effect| !shown.left_out.contains(effect)).collect()
     }
 }
 

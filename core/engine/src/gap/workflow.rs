@@ -40,6 +40,7 @@ pub struct GapWorkflow {
     pub(super) changed: Vec<PathBuf>,
     pub(super) shown: Option<String>,
     pub(super) beside: Option<String>,
+    pub(super) left_out: LeftOut,
     /// `None`: not read yet, or the file cannot be used, so nothing is written over it.
     pub(super) model: Option<Arc<RigModel>>,
     /// How far each of its effects moves what it is about.
@@ -48,6 +49,15 @@ pub struct GapWorkflow {
     /// Findings whose arm is no better off with small shares of all usual effects.
     pub(super) not_sized: Vec<String>,
     pub(super) seen: Seen,
+}
+
+/// What the operator does not want to add.
+#[derive(Clone, Debug, Default)]
+pub(super) struct LeftOut {
+    /// The finding that it is about.
+    pub of: Option<String>,
+    /// By place in its list of effects.
+    pub effects: Vec<usize>,
 }
 
 /// Said once, where the operator asked for it.
@@ -303,6 +313,7 @@ impl Workflow for GapWorkflow {
             changed: Vec::new(),
             shown: None,
             beside: None,
+            left_out: LeftOut::default(),
             model: None,
             moved_m: Vec::new(),
             changing: None,
@@ -340,6 +351,12 @@ impl Workflow for GapWorkflow {
             }
             GapCommand::Delete { id } => {
                 context.start(GapWork::Delete { store: self.store.clone(), id });
+            }
+            GapCommand::LeaveOut { effect, is_left_out } => {
+                self.left_out.effects.retain(|other| *other != effect);
+                if is_left_out {
+                    self.left_out.effects.push(effect);
+                }
             }
             GapCommand::Add { effects } => self.add(effects, around, context),
             GapCommand::Undo => {

@@ -198,10 +198,14 @@ fn effects(view: &View) -> Said {
     if gap_view.searching.is_some() || gap_view.chosen.is_empty() || gap_view.failed.is_some() {
         return gap::gap(view).into();
     }
-    let addable = gap_view.addable();
+    let (addable, wanted) = (gap_view.addable(), gap_view.wanted());
     if gap::is_of_choice(gap_view) && !addable.is_empty() {
-        let label = crate::operator::words::gap::add_label(view, &addable);
-        let sentence = gap_view.finding().map_or_else(String::new, |finding| in_short(finding, &addable));
+        if wanted.is_empty() {
+            let sentence = "All that was found is left out. Tick under Gap what shall be added.";
+            return Said::press(sentence, "Go to Gap", vec![Action::Go(Screen::Gap)]);
+        }
+        let label = crate::operator::words::gap::add_label(view, &wanted);
+        let sentence = gap_view.finding().map_or_else(String::new, |finding| in_short(finding, &wanted));
         return Said::press(sentence, label, vec![Action::Gap(GapAction::Add)]);
     }
     if gap::is_of_choice(gap_view) && gap_view.sizes_arm {
