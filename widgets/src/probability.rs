@@ -8,6 +8,8 @@ use crate::theme::{self, Role, space};
 const ROW: f32 = 22.0;
 const BAR: f32 = 8.0;
 const FIGURE_WIDTH: f32 = 52.0;
+const NAME_ROW: f32 = 16.0;
+const LEAST_BAR: f32 = 24.0;
 
 /// A share of a whole with its name.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,10 +47,14 @@ pub fn share_rows(ui: &mut Ui, rows: &[ShareRow]) {
         ui.painter().layout_no_wrap(text.to_owned(), small.clone(), egui::Color32::WHITE).size().x
     };
     let whole = ui.available_width();
-    let names = rows.iter().map(|row| width(&row.name)).fold(0.0, f32::max).min(whole * 0.42) + space::S;
-    let notes = rows.iter().map(|row| width(&row.note)).fold(0.0, f32::max).min(whole * 0.45);
+    let names = rows.iter().map(|row| width(&row.name)).fold(0.0, f32::max) + space::S;
+    let notes = rows.iter().map(|row| width(&row.note)).fold(0.0, f32::max);
+    // Where a line is too short for all of it, names stand above their bars.
+    let is_stacked = names + LEAST_BAR + FIGURE_WIDTH + space::S + notes > whole;
+    let (above, names) = if is_stacked { (NAME_ROW, 0.0) } else { (0.0, names) };
+    let notes = notes.min(whole * 0.6);
     for row in rows {
-        let (rect, response) = ui.allocate_exact_size(vec2(whole, ROW), Sense::hover());
+        let (rect, response) = ui.allocate_exact_size(vec2(whole, above + ROW), Sense::hover());
         let figure = percent(row.share);
         let comma = if row.note.is_empty() { "" } else { ", " };
         let words = format!("{}: {figure}{comma}{}", row.name, row.note);
@@ -58,15 +64,17 @@ pub fn share_rows(ui: &mut Ui, rows: &[ShareRow]) {
         }
         let tokens = theme::tokens(ui);
         let left = rect.left() + names;
-        let right = (rect.right() - notes - space::S - FIGURE_WIDTH).max(left + 24.0);
-        let bar = Rect::from_min_max(pos2(left, rect.top()), pos2(right, rect.bottom()));
+        let right = (rect.right() - notes - space::S - FIGURE_WIDTH).max(left + LEAST_BAR);
+        let bar = Rect::from_min_max(pos2(left, rect.top() + above), pos2(right, rect.bottom()));
         fill(ui, bar, row.share, row.role);
         let painter = ui.painter_at(rect);
-        let name = elided(ui, &row.name, &small, names - space::S, tokens.text);
-        painter.galley(pos2(rect.left(), rect.center().y - name.size().y / 2.0), name, tokens.text);
-        let figure_at = pos2(right + FIGURE_WIDTH - 4.0, rect.center().y);
+        let room = if is_stacked { whole } else { names - space::S };
+        let name = elided(ui, &row.name, &small, room, tokens.text);
+        let middle = if is_stacked { rect.top() + above / 2.0 } else { bar.center().y };
+        painter.galley(pos2(rect.left(), middle - name.size().y / 2.0), name, tokens.text);
+        let figure_at = pos2(right + FIGURE_WIDTH - 4.0, bar.center().y);
         painter.text(figure_at, Align2::RIGHT_CENTER, figure, small.clone(), tokens.text_strong);
-        let note_at = pos2(right + FIGURE_WIDTH + space::S, rect.center().y);
+        let note_at = pos2(right + FIGURE_WIDTH + space::S, bar.center().y);
         let note = elided(ui, &row.note, &small, rect.right() - note_at.x, tokens.text_weak);
         painter.galley(note_at - vec2(0.0, note.size().y / 2.0), note, tokens.text_weak);
         response.on_hover_text(words);

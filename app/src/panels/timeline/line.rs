@@ -99,7 +99,8 @@ fn text(ui: &mut Ui, cx: &mut PanelContext<'_>, entry: &TimelineEntry) {
     let color = if is_better(entry) { Role::Accepted.color(tokens) } else { tokens.text_strong };
     // The errors keep their room; when and of what gives way.
     let errors = line(errors, TextStyle::Small, color, whole);
-    let heading = format!("{} · {}", entry.subject.name(), clock(entry.at));
+    // What says no more than the title below goes first.
+    let heading = format!("{} · {}", clock(entry.at), entry.subject.name());
     let room = whole - errors.size().x - space::M;
     let heading = line(heading, TextStyle::Small, tokens.text_weak, room);
     let beside = at + vec2(heading.size().x + space::M, 0.0);

@@ -9,7 +9,7 @@ use super::proposing::{preview_angle, propose};
 use crate::panels::PanelContext;
 use crate::panels::robot::parts::cannot_show;
 
-const TITLE: f32 = 112.0;
+const TITLE: f32 = 148.0;
 const FIGURES: f32 = 104.0;
 
 /// One line: title, slider, angle, temperature.
