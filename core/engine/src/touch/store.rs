@@ -121,6 +121,14 @@ pub fn write(session: &Path, joints: &[String], progress: &Progress) -> Result<(
     make_durable(session)
 }
 
+/// Keeps with a run that a place of the screen came of its touches, which does not make them outdated; its tables
+/// stay as they are.
+pub fn keep_placement(session: &Path, at: Timestamp) -> Result<(), RunError> {
+    let mut progress: Progress = read_json(&session.join(PROGRESS)).map_err(RunError::unread)?;
+    progress.gave_placement = Some(at);
+    write_json(&session.join(PROGRESS), &progress)
+}
+
 fn write_table(file: &Path, joints: &[String], records: &[&TouchRecord]) -> Result<(), RunError> {
     if records.is_empty() {
         return InUse::new(file.to_owned()).forget().map_err(RunError::unwritable(file));

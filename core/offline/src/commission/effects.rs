@@ -20,7 +20,7 @@ use plumbline_model::touchscreen::place_screen;
 use super::error::CommissionError;
 use super::lab::Lab;
 use super::steps::Step;
-use super::touches::session;
+use super::touches::{accept_place, session};
 
 /// Searches, compares, and puts a model in use.
 pub(super) fn run(lab: &Lab, context: &dyn JobContext) -> Result<Step, CommissionError> {
@@ -152,7 +152,7 @@ pub(super) fn place_for_others(
         })
         .collect();
     let placement = place_screen(&lab.rig.touchscreen, &touches).map_err(CommissionError::room)?;
-    lab.accept_placement(&placement.of_rig(&lab.rig.name))
+    accept_place(lab, &placement.of_rig(&lab.rig.name))
 }
 
 #[cfg(test)]

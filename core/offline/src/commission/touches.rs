@@ -18,6 +18,7 @@ use plumbline_handeye::{Tie, body, screen, table};
 use plumbline_model::robot::{Chain, Rig};
 use plumbline_model::session::Touchscreen;
 use plumbline_model::touch_plan::{Finger, Pattern, PlanOptions, Purpose, Sides};
+use plumbline_model::touchscreen::ScreenPlacement;
 use plumbline_model::{JobContext, Pixel, Point};
 use plumbline_twin::Touched;
 
@@ -149,6 +150,12 @@ fn write(lab: &Lab, joints: &[String], plan: &RunPlan, progress: &Progress) -> R
     std::fs::rename(&begun, &folder).map_err(CommissionError::room)
 }
 
+/// Puts a place of the screen in use that came of the touches.
+pub(super) fn accept_place(lab: &Lab, placed: &ScreenPlacement) -> Result<(), CommissionError> {
+    store::keep_placement(&session(lab), placed.at)?;
+    lab.accept_placement(placed)
+}
+
 /// Places the screen by the touches and the nominal arm, and looks where the eyes see it.
 pub(super) fn place(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> Result<Step, CommissionError> {
     let mut step =
@@ -167,7 +174,7 @@ pub(super) fn place(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> R
         .collect();
     step.after_mm = rms(&left_out);
     step.notes.extend(placed.remarks.iter().cloned());
-    lab.accept_placement(&placed)?;
+    accept_place(lab, &placed)?;
     lab.keep_tie(&look_around(lab, robot, &placed.screen, &mut step, context)?)?;
     Ok(step)
 }
