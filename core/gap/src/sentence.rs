@@ -83,7 +83,7 @@ fn not_in_library(finding: &Finding) -> String {
         format!("There is a gap ({before} where noise alone leaves {})", size(shown.floor, shown.unit))
     } else {
         format!(
-            "The mean error is {before}, how much of it is noise is not known (nothing was measured twice)"
+            "The mean error is {before}, how much of it is noise is not known (too little was measured twice)"
         )
     };
     let article = |on: &str| if on.starts_with("where ") { on.to_owned() } else { format!("the {on}") };

@@ -1,6 +1,7 @@
 //! What can be asked for by name of touching the screen.
 
 use std::borrow::Cow;
+use std::path::Path;
 
 use plumbline_engine::view::{ContactSource, TouchPhase};
 use plumbline_engine::{Command, TouchCommand, View};
@@ -83,13 +84,18 @@ impl Preset {
     }
 }
 
-/// Targets that are drawn by chance are others than those of the check before.
+/// Targets that are drawn by chance are others than those of the checks before, also of those before a restart.
 pub(super) fn other_targets(view: &View, options: PlanOptions) -> PlanOptions {
-    let before = view.touch.plan.as_ref().map(|plan| &plan.options);
-    match before.filter(|before| before.purpose == Purpose::Check && options.purpose == Purpose::Check) {
-        Some(before) => PlanOptions { seed: before.seed.wrapping_add(1), ..options },
-        None => options,
+    if options.purpose != Purpose::Check {
+        return options;
     }
+    let is_check =
+        |folder: &Path| folder.file_name().is_some_and(|name| name.to_string_lossy().contains("_check"));
+    let made = view.gap.sessions.iter().filter(|session| is_check(&session.folder)).count() as u64;
+    let before = view.touch.plan.as_ref().map(|plan| &plan.options);
+    let planned = before.filter(|before| before.purpose == Purpose::Check);
+    let next = planned.map_or(options.seed, |before| before.seed.wrapping_add(1));
+    PlanOptions { seed: next.max(options.seed.wrapping_add(made)), ..options }
 }
 
 /// What a finger reaches of the screen, as far as that is known; else all of it but its border.

@@ -81,7 +81,7 @@ pub fn is_there_a_gap(finding: &Finding) -> &'static str {
 pub fn rest(finding: &Finding) -> (bool, String) {
     let (left, shown) = (&finding.unexplained, &finding.shown);
     if !finding.comparison.is_noise_known() {
-        let said = "Whether the rest is noise cannot be told: nothing was measured twice.";
+        let said = "Whether the rest is noise cannot be told: too little was measured twice.";
         return (false, said.to_owned());
     }
     if !finding.effects.is_empty() && !shown.is_near_noise() {

@@ -16,6 +16,7 @@ use super::work::{Context, GapResult, GapWork, Restored};
 use crate::gap::view::GapView;
 use crate::ground::jobs::JobId;
 use crate::ground::notice::NoticeLevel;
+use crate::ground::sessions::{is_for_training, is_of_corners};
 use crate::ground::{Moment, Nothing, Workflow};
 
 /// What the workflow can see of the rest.
@@ -225,9 +226,15 @@ impl GapWorkflow {
         context.start(GapWork::Report { finding, context: Box::new(page), file, pdf });
     }
 
-    /// A run of touches is finished: it is compared next, and is in the list.
+    /// A run of touches is finished: it is compared next, and is in the list. One that checks is compared beside
+    /// those that were learned from: few touches alone tell little.
     pub fn touched(&mut self, session: &Path, context: &mut Context<'_>) {
-        self.chosen = vec![session.to_owned()];
+        if is_for_training(session) || self.chosen.is_empty() {
+            self.chosen.clear();
+        }
+        if !is_of_corners(session) && !self.chosen.iter().any(|chosen| chosen == session) {
+            self.chosen.push(session.to_owned());
+        }
         self.list(context);
     }
 
@@ -287,8 +294,12 @@ impl GapWorkflow {
             return;
         }
         let usable = self.sessions.iter().filter(|session| session.problem.is_none());
-        let first = usable.map(|session| session.folder.as_path()).next();
-        self.chosen = around.newest_session.as_deref().or(first).map(Path::to_owned).into_iter().collect();
+        let usable = || usable.clone().map(|session| session.folder.as_path());
+        let newest = around.newest_session.as_deref();
+        let first = newest.filter(|newest| is_for_training(newest));
+        let first = first.or_else(|| usable().find(|folder| is_for_training(folder)));
+        let first = first.or(newest).or_else(|| usable().next());
+        self.chosen = first.map(Path::to_owned).into_iter().collect();
     }
 }
 

@@ -42,6 +42,8 @@ pub struct GraspAround {
     pub found: Option<Arc<DetectionsView>>,
     /// Whether an experiment makes its attempts.
     pub in_experiment: bool,
+    /// Whether a run of touches goes on by itself.
+    pub is_touching: bool,
 }
 
 impl GraspAround {
@@ -75,6 +77,7 @@ impl GraspAround {
             own_eyes: true,
             found: None,
             in_experiment: false,
+            is_touching: false,
         }
     }
 }

@@ -21,6 +21,9 @@ pub fn gates(around: &GraspAround, choice: HandChoice, method: Method) -> Vec<Ga
         // A step of a hand needs no method: published ones are refused below.
         let hands = hands.unwrap_or(&[Hand::Left]);
         gates.push(stop(robot));
+        if around.is_touching {
+            gates.push(closed("Run", "A run of touches moves the arm: pause it, or wait until it is over."));
+        }
         gates.push(of_any(hands, |hand| joints(around, hand.name())));
         gates.push(of_any(hands, |hand| load(around, hand.name())));
         gates.push(of_any(hands, |hand| rest(around, hand.name())));

@@ -26,6 +26,21 @@ pub fn folders(folder: &Path) -> Result<Vec<PathBuf>, Unread> {
     }
 }
 
+/// Whether a session was touched to be learned from: not only its corners to place the screen, and
+/// not through a model to check that.
+pub fn is_for_training(folder: &Path) -> bool {
+    !is_of_corners(folder) && !named(folder).contains("_check")
+}
+
+/// Whether only the corners of the screen were touched, to place it.
+pub fn is_of_corners(folder: &Path) -> bool {
+    named(folder).contains("_corners")
+}
+
+fn named(folder: &Path) -> std::borrow::Cow<'_, str> {
+    folder.file_name().unwrap_or_default().to_string_lossy()
+}
+
 /// The rig that a session names; a rig file lies in the session's folder. It may be that of a robot
 /// that was only measured ([`Rig::read_measured`]).
 ///

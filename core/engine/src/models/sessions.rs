@@ -23,13 +23,6 @@ pub fn list(folder: &Path) -> Result<Vec<TouchSession>, Unread> {
     Ok(sessions)
 }
 
-/// Whether a session was touched to be learned from: not only its corners to place the screen, and
-/// not through a model to check that.
-pub fn is_for_training(folder: &Path) -> bool {
-    let name = folder.file_name().unwrap_or_default().to_string_lossy();
-    !name.contains("_corners") && !name.contains("_check")
-}
-
 /// A session as it stands in the list.
 pub fn listed(folder: PathBuf) -> TouchSession {
     let started = Manifest::read(&folder.join(names::MANIFEST)).ok().map(|manifest| manifest.started);

@@ -6,9 +6,9 @@ use plumbline_correction::Method;
 use plumbline_model::counted;
 
 use super::screen::{corners, moved_m};
-use super::sessions::is_for_training;
 use super::view::{EarlierModel, ModelMap, ModelsView};
 use super::workflow::{ModelsAround, ModelsWorkflow};
+use crate::ground::sessions::is_for_training;
 use crate::ground::step::StepState;
 
 impl ModelsWorkflow {

@@ -14,7 +14,7 @@ use plumbline_widgets::format;
 
 use super::sentence::Guidance;
 use super::{failed_inside, gap, robot};
-use crate::operator::snapshot::gap::Finding;
+use crate::operator::snapshot::gap::{Finding, Verdict};
 use crate::operator::{Action, CommissionAction, GapAction, MountAction, Screen};
 
 /// Where commissioning is, and what comes next.
@@ -189,7 +189,10 @@ fn in_short(finding: &Finding, addable: &[usize]) -> String {
     let closed = finding.shown.closure.map_or_else(String::new, |closure| {
         format!(" On touches that were held out it closes {} of the gap.", format::percent(closure))
     });
-    format!("Found: {}.{closed} Adding puts it into the model in use; nothing moves.", names.join(", "))
+    // What only closes a part of the gap is no name for it.
+    let found =
+        if finding.verdict == Verdict::NotInLibrary { "Not named, but closed in part by" } else { "Found:" };
+    format!("{found} {}.{closed} Adding puts it into the model in use; nothing moves.", names.join(", "))
 }
 
 fn effects(view: &View) -> Said {
