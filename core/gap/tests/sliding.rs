@@ -239,7 +239,7 @@ fn a_session_is_predicted_through_the_slide_and_through_the_model() {
     model.add(&rig, addition).expect("the boom is a place of this robot");
     let predicted = predict_session_with(&session, &rig, None, &model).expect("predicted").poses;
     let table = session.poses.as_ref().expect("poses");
-    for (row, predicted) in table.rows().zip(&predicted) {
+    for (row, predicted) in table.rows().zip(predicted.iter().flatten()) {
         let off: Vector3<f64> = row.measured.expect("measured").coords - predicted.tip.coords;
         assert!(off.norm() < 5.0 * NOISE_M, "{off:?}");
     }
