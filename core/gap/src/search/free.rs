@@ -28,6 +28,11 @@ pub(super) struct Rival {
 /// Of a joint on the angle of another one: what one pulls at another, by a cable say, goes smoothly.
 const FUNCTIONS_OF_ANOTHER: usize = 3;
 
+/// Angles at which a joint may jump that are tried, each with as many rows between it and the next.
+const STEPS: usize = 16;
+/// Angles (rad, m) closer than this are the same pose again.
+const SAME_ANGLE: f64 = 5e-3;
+
 /// What moves.
 enum Moved {
     /// A column of the lines.
@@ -108,8 +113,8 @@ pub(super) fn rivals(
             }
         }
     }
-    // Each is as probable as every other one. What joints do by each other adds to that, all others of one joint
-    // together as much as one rival.
+    // Each is as probable as every other one. What joints do by each other and in steps adds to that, all others, and
+    // all steps, of one joint together as much as one rival.
     let each = UNKNOWN / rivals.len().max(1) as f64;
     let mut shares = vec![each; rivals.len()];
     for (rival, own, among) in of_other_joints(measurements, covariates, library, linear) {
@@ -143,8 +148,9 @@ pub(super) fn rivals(
     (rivals, blocks, matrix)
 }
 
-/// Of an arm that is measured from outside: the turn of each joint by how far it came (a joint that remembers), and by
-/// the angle of another one (what a cable pulls at). With each, how many of its sort the joint has.
+/// Of an arm that is measured from outside: the turn of each joint by how far it came (a joint that remembers), by the
+/// angle of another one (what a cable pulls at), and in a step at an angle of its own (what catches). With each, how many
+/// of its sort the joint has.
 fn of_other_joints(
     measurements: &Measurements,
     covariates: &Covariates,
@@ -166,6 +172,10 @@ fn of_other_joints(
         let title = effect.title.split(':').next().unwrap_or_default();
         let Some(own) = titles.iter().position(|known| *known == title) else { continue };
         let base = base(measurements, linear, &Moved::Column(linear.gauge + block.start));
+        for (column, among) in steps(measurements, linear, &base, own) {
+            let of = format!("turn of {title}");
+            found.push((Rival { of, on: format!("angle of {title}, in a step") }, vec![column], among));
+        }
         let mut add = |on: String, value: &dyn Fn(usize) -> Option<f64>, count: usize, among: usize| {
             if let Some(columns) = functions(linear, covariates, &base, value, None, count) {
                 found.push((Rival { of: format!("turn of {title}"), on }, columns, among));
@@ -179,6 +189,28 @@ fn of_other_joints(
         }
     }
     found
+}
+
+/// A turn that jumps where a joint passes an angle (what catches there), one column for each angle that is tried; with
+/// each, how many are.
+fn steps(measurements: &Measurements, linear: &Linear, base: &[f64], joint: usize) -> Vec<(Vec<f64>, usize)> {
+    let angle = |row: usize| measurements.rows[row].angles_rad().get(joint).copied();
+    let mut known: Vec<f64> = (0..measurements.rows.len()).filter_map(angle).collect();
+    known.sort_by(f64::total_cmp);
+    known.dedup_by(|a, b| (*a - *b).abs() < SAME_ANGLE);
+    if known.len() < 2 * STEPS {
+        return vec![];
+    }
+    let edge = |k: usize| {
+        let after = (k + 1) * known.len() / (STEPS + 1);
+        0.5 * (known[after - 1] + known[after])
+    };
+    let column = |k: usize| {
+        let edge = edge(k);
+        let is_beyond = |line: usize| angle(linear.row[line]).is_some_and(|angle| angle > edge);
+        (0..base.len()).map(|line| if is_beyond(line) { LARGE * base[line] } else { 0.0 }).collect()
+    };
+    (0..STEPS).map(|k| (column(k), STEPS)).collect()
 }
 
 /// How far each joint turned since the row before it in time, by rows, rad; `None` where that row is not there.
