@@ -7,6 +7,7 @@ use plumbline_effects::measurements::{Measurements, What};
 
 use super::library::{Block, Library};
 use super::linear::Linear;
+use super::steps::steps;
 use crate::covariates::Covariates;
 
 /// Smooth functions of each covariate.
@@ -27,11 +28,6 @@ pub(super) struct Rival {
 
 /// Of a joint on the angle of another one: what one pulls at another, by a cable say, goes smoothly.
 const FUNCTIONS_OF_ANOTHER: usize = 3;
-
-/// Angles at which a joint may jump that are tried, each with as many rows between it and the next.
-const STEPS: usize = 16;
-/// Angles (rad, m) closer than this are the same pose again.
-const SAME_ANGLE: f64 = 5e-3;
 
 /// What moves.
 enum Moved {
@@ -172,9 +168,10 @@ fn of_other_joints(
         let title = effect.title.split(':').next().unwrap_or_default();
         let Some(own) = titles.iter().position(|known| *known == title) else { continue };
         let base = base(measurements, linear, &Moved::Column(linear.gauge + block.start));
-        for (column, among) in steps(measurements, linear, &base, own) {
-            let of = format!("turn of {title}");
-            found.push((Rival { of, on: format!("angle of {title}, in a step") }, vec![column], among));
+        let (columns, among) = steps(measurements, linear, &base, own);
+        for column in columns {
+            let rival = Rival { of: format!("turn of {title}"), on: format!("angle of {title}, in a step") };
+            found.push((rival, vec![column.into_iter().map(|value| LARGE * value).collect()], among));
         }
         let mut add = |on: String, value: &dyn Fn(usize) -> Option<f64>, count: usize, among: usize| {
             if let Some(columns) = functions(linear, covariates, &base, value, None, count) {
@@ -189,28 +186,6 @@ fn of_other_joints(
         }
     }
     found
-}
-
-/// A turn that jumps where a joint passes an angle (what catches there), one column for each angle that is tried; with
-/// each, how many are.
-fn steps(measurements: &Measurements, linear: &Linear, base: &[f64], joint: usize) -> Vec<(Vec<f64>, usize)> {
-    let angle = |row: usize| measurements.rows[row].angles_rad().get(joint).copied();
-    let mut known: Vec<f64> = (0..measurements.rows.len()).filter_map(angle).collect();
-    known.sort_by(f64::total_cmp);
-    known.dedup_by(|a, b| (*a - *b).abs() < SAME_ANGLE);
-    if known.len() < 2 * STEPS {
-        return vec![];
-    }
-    let edge = |k: usize| {
-        let after = (k + 1) * known.len() / (STEPS + 1);
-        0.5 * (known[after - 1] + known[after])
-    };
-    let column = |k: usize| {
-        let edge = edge(k);
-        let is_beyond = |line: usize| angle(linear.row[line]).is_some_and(|angle| angle > edge);
-        (0..base.len()).map(|line| if is_beyond(line) { LARGE * base[line] } else { 0.0 }).collect()
-    };
-    (0..STEPS).map(|k| (column(k), STEPS)).collect()
 }
 
 /// How far each joint turned since the row before it in time, by rows, rad; `None` where that row is not there.
