@@ -68,7 +68,7 @@ pub fn structure(rows: &[Repeat], free: f64, when: &str, joints: &[String]) -> O
     }
     let spread = Spread::new(tamed(rows, width), free);
     let has_levers = rows.iter().all(|row| !row.levers.is_empty());
-    let tried = covariates(rows, when, if has_levers { &[] } else { joints });
+    let tried = covariates(rows, when, joints);
     let fits = tried.len() + if has_levers { joints.len() } else { 0 };
     let mut best = if has_levers { by_levers(rows, &spread, joints, fits) } else { None };
     for (on, columns) in tried {

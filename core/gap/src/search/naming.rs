@@ -100,8 +100,10 @@ impl Evidence<'_> {
         let (p_value, left) = self.lack_of_fit(of_library.map_or(&top, |model| &model.set));
         let large = (RIVAL_SHARE * self.look.gap()).max(RIVAL_SIZE);
         let best = self.alone.and_then(|alone| alone.models.first()).or(of_library);
-        // Few parameters that close as much as many speak for themselves where no set without them is left in the window.
-        let is_needed = of_library.is_none();
+        // Few parameters that close as much as many speak for themselves where no set without them is left in the window, unless
+        // every joint is off by itself anyway.
+        let has_family = best.is_some_and(|best| self.has_family(best));
+        let is_needed = of_library.is_none() && !has_family;
         let counts = |model: &&Model| match self.floor.source {
             FloorSource::Fitted => is_needed && self.has_rival(model) || self.closes_more(model, best),
             _ => p_value < RIVAL_P && self.rival_does(model) > large,
@@ -247,6 +249,10 @@ impl Evidence<'_> {
         kinds.map(|kind| kind.degrees_of_freedom * kind.sd.len() as f64).sum::<f64>().max(4.0)
     }
 
+    fn has_family(&self, model: &Model) -> bool {
+        model.set.iter().any(|&block| self.look.blocks[block].is_family)
+    }
+
     fn has_rival(&self, model: &Model) -> bool {
         model.set.iter().any(|&block| block >= self.look.effects)
     }
@@ -265,8 +271,7 @@ impl Evidence<'_> {
             return false;
         };
         // Where every joint is off by itself, one more that is off is no other thing: it is a class already.
-        let is_of_every_site = library.set.iter().any(|&block| self.look.blocks[block].is_family);
-        if is_of_every_site || !self.has_rival(model) {
+        if self.has_family(library) || !self.has_rival(model) {
             return false;
         }
         let left = |set: &[usize]| field.given(set, &self.look.packed).square_left() - self.look.within.0;

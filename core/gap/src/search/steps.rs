@@ -87,3 +87,90 @@ impl Smooth {
         column - fitted
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use plumbline_effects::measurements::What;
+    use plumbline_effects::{Assumed, Effect, Present};
+    use plumbline_model::robot::Rig;
+    use plumbline_model::{Session, Unattended};
+    use rand::rngs::StdRng;
+    use rand::{Rng, SeedableRng};
+
+    use super::*;
+    use crate::finding::FloorSource;
+    use crate::floor::{Floor, KindFloor};
+
+    const JOINTS: [&str; 6] =
+        ["r_shoulder_z", "r_shoulder_y", "r_arm_x", "r_elbow_y", "r_wrist_z", "r_wrist_x"];
+    const BASE_RAD: [f64; 6] = [-0.03, 0.31, 0.44, 1.25, 0.5, 0.3];
+    const ELBOW: usize = 3;
+    const JUMPS_AT_RAD: f64 = 1.32;
+
+    /// Poses drawn by chance, seen from outside; the elbow is off by `turn_rad` where it stands beyond an angle.
+    fn made(turn_rad: f64, law: impl Fn(f64) -> f64) -> Measurements {
+        let mut random = StdRng::seed_from_u64(5);
+        let mut text =
+            JOINTS.map(|joint| format!("cmd_{joint}_rad,")).concat() + "meas_x_m,meas_y_m,meas_z_m\n";
+        for _ in 0..50 {
+            text += &BASE_RAD.map(|angle| format!("{},", angle + random.random_range(-0.5..0.5))).concat();
+            text += "0,0,0\n";
+        }
+        let manifest = format!(
+            "format = 1\nrig = \"nico\"\nstarted = 2026-01-01T00:00:00Z\n[chain]\ntip = \"right_index_tip\"\njoints = {JOINTS:?}\n"
+        );
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        std::fs::write(folder.path().join("session.toml"), manifest).expect("writable");
+        std::fs::write(folder.path().join("poses.csv"), text).expect("writable");
+        let session = Session::read(folder.path()).expect("well formed");
+        let rig = Rig::built_in("nico").expect("comes along");
+        let mut made = Measurements::of_sessions(&[("made".to_owned(), session)], &rig).expect("usable");
+        let arm = made.apparatuses[0].arm.clone();
+        let zero = Effect::find("joint-zero", "r_elbow_y", None, arm.as_ref(), None).expect("of the library");
+        for row in 0..made.rows.len() {
+            let value = turn_rad * law(made.rows[row].angles_rad()[ELBOW]);
+            let effects = vec![Present { effect: zero.clone(), values: vec![value] }];
+            let truth = Assumed { effects, ..Assumed::nominal(&made) };
+            let exact = made.predict(&made.rows[row], &truth).expect("predictable");
+            made.rows[row].measured =
+                exact.iter().map(|at| at + 2e-4 * random.random_range(-1.7..1.7)).collect();
+        }
+        made
+    }
+
+    /// The columns of steps of the elbow, and the share of what smooth laws leave that the first one explains.
+    fn first(made: &Measurements) -> (Vec<f64>, f64, usize) {
+        let kind = KindFloor { what: What::Pose, sd: vec![2e-4; 3], degrees_of_freedom: 50.0, sigma_m: None };
+        let floor = Floor { kinds: vec![kind], source: FloorSource::Fitted };
+        let arm = made.apparatuses[0].arm.as_ref();
+        let zero = Effect::find("joint-zero", "r_elbow_y", None, arm, None).expect("of the library");
+        let linear = Linear::of(made, &floor, &Assumed::nominal(made), &[zero], &Unattended).expect("linear");
+        let base: Vec<f64> = linear.lines.column(linear.gauge).iter().copied().collect();
+        let (columns, among) = steps(made, &linear, &base, ELBOW);
+        let angle = |line: usize| made.rows[linear.row[line]].angles_rad().get(ELBOW).copied();
+        let smooth = Smooth::of(&linear, &base, &angle).expect("solvable");
+        let left = smooth.left_of(linear.lines.column(linear.lines.ncols() - 1).clone_owned());
+        let own = smooth.left_of(DVector::from_column_slice(&columns[0]));
+        let share = own.dot(&left).powi(2) / (own.norm_squared() * left.norm_squared());
+        let beyond = (0..base.len()).filter(|&line| columns[0][line] != 0.0).filter_map(angle);
+        (beyond.collect(), share, among)
+    }
+
+    #[test]
+    fn the_angle_at_which_a_joint_jumps_is_found_beside_what_goes_smoothly() {
+        let made = made(0.02, |angle| f64::from(u8::from(angle > JUMPS_AT_RAD)));
+        let (beyond, share, among) = first(&made);
+        let edge = beyond.iter().copied().fold(f64::MAX, f64::min);
+        let angles = made.rows.iter().map(|row| row.angles_rad()[ELBOW]);
+        let wrong = angles.filter(|angle| (*angle > JUMPS_AT_RAD) != (*angle >= edge)).count();
+        assert_eq!(wrong, 0, "from {edge}");
+        assert!(share > 0.9, "{share}");
+        assert!(among > 30, "{among}");
+    }
+
+    #[test]
+    fn a_wrong_ratio_is_no_jump() {
+        let (_, share, _) = first(&made(0.02, |angle| angle - 1.2));
+        assert!(share < 0.3, "{share}");
+    }
+}
