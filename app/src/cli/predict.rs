@@ -28,7 +28,8 @@ pub fn run(arguments: Predict, output: &Output) -> anyhow::Result<()> {
 }
 
 fn text(report: &PredictReport) -> String {
-    let rows = format::count(report.rows.len(), "row");
+    let is_predicted = |row: &&PredictedRow| !matches!(row, PredictedRow::Poses { angles: None, .. });
+    let rows = format::count(report.rows.iter().filter(is_predicted).count(), "row");
     let screen = if report.screen == "session" { "of the session" } else { "of the rig model" };
     let mut text = format!("{rows} predicted for {}, touchscreen {screen}\n", report.rig);
     if !report.effects.is_empty() {
@@ -39,6 +40,9 @@ fn text(report: &PredictReport) -> String {
         if count > 0 {
             text.push_str(&format!("  {} from {of}\n", format::count(count, "row")));
         }
+    }
+    for tip in &report.tips {
+        text.push_str(&format!("  {} of {}: {}\n", format::count(tip.rows, "pose"), tip.tip, tip.words));
     }
     for gap in &report.gaps {
         text.push_str(&format!(
@@ -57,7 +61,8 @@ fn text(report: &PredictReport) -> String {
 
 fn angles_of(row: &PredictedRow) -> Option<&'static str> {
     match row {
-        PredictedRow::Touches { angles, .. } | PredictedRow::Poses { angles, .. } => Some(angles),
+        PredictedRow::Touches { angles, .. } => Some(angles),
+        PredictedRow::Poses { angles, .. } => *angles,
         PredictedRow::Localizations { .. } => None,
     }
 }
@@ -86,8 +91,9 @@ fn line(row: &PredictedRow) -> String {
             place(est_x_m, est_y_m, est_z_m),
             place(corrected_x_m, corrected_y_m, corrected_z_m)
         ),
-        PredictedRow::Poses { meas_x_m, meas_y_m, meas_z_m, angles, .. } => {
-            format!("  pose  {}  ({angles})\n", format::position_mm([meas_x_m, meas_y_m, meas_z_m]))
+        PredictedRow::Poses { angles: None, .. } => "  pose  not predicted\n".to_owned(),
+        PredictedRow::Poses { meas_x_m, meas_y_m, meas_z_m, angles: Some(angles), .. } => {
+            format!("  pose  {}  ({angles})\n", place(meas_x_m, meas_y_m, meas_z_m))
         }
     }
 }

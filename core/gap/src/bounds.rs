@@ -140,9 +140,8 @@ pub(crate) fn bound_by_own_rows(found: &mut Found, used: &Measurements) {
 /// Where repeats still depend on something that was logged, with all that was found in the model, that is
 /// not explained, and no noise.
 pub(crate) fn still_structured(found: &mut Found, used: &Measurements, compared: &Compared) {
-    let Some(structure) = compare::structure_of(used, &compare::residuals(used, &found.assumed)) else {
-        return;
-    };
+    let left = compare::residuals(used, &found.assumed);
+    let Some(structure) = compare::structure_of(used, &found.assumed, &left) else { return };
     if structure.size_sigmas < LEAST_STRUCTURE.max(STRUCTURE_SHARE * compared.comparison.size_sigmas) {
         return;
     }

@@ -201,7 +201,8 @@ fn a_session_is_predicted_through_the_slide_and_through_the_model() {
     write(other.path(), RIGHT, &[still], &[Vector3::zeros()]);
     let drawn_in =
         predict_session(&Session::read(other.path()).expect("a session"), &rig, None).expect("predicted");
-    let out = nominal[0].tip.coords.coords - drawn_in.poses[0].tip.coords.coords;
+    let [out_there, at_rest] = [nominal[0], drawn_in.poses[0]].map(|pose| pose.expect("a frame").tip);
+    let out = out_there.coords.coords - at_rest.coords.coords;
     let along = Vector3::new(first[0].cos(), first[0].sin(), 0.0) * first[BOOM];
     assert!((out - along).norm() < 1e-12, "{out} {along}");
     let mut model = RigModel::nominal(&rig);
@@ -239,7 +240,8 @@ fn a_session_is_predicted_through_the_slide_and_through_the_model() {
     model.add(&rig, addition).expect("the boom is a place of this robot");
     let predicted = predict_session_with(&session, &rig, None, &model).expect("predicted").poses;
     let table = session.poses.as_ref().expect("poses");
-    for (row, predicted) in table.rows().zip(&predicted) {
+    for (row, predicted) in table.rows().zip(predicted) {
+        let predicted = predicted.expect("a frame");
         let off: Vector3<f64> = row.measured.expect("measured").coords - predicted.tip.coords;
         assert!(off.norm() < 5.0 * NOISE_M, "{off:?}");
     }

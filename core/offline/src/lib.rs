@@ -68,7 +68,7 @@ pub use plumbline_twin::training_set::SetWorld;
 pub use plumbline_vision::detect as detector;
 pub use plumbline_vision::detect_score as scores;
 pub use plumbline_vision::yolo_set::Split;
-pub use predict::{ImagePoints, PredictArgs, PredictReport, PredictedRow, TableGap, predict};
+pub use predict::{ImagePoints, PredictArgs, PredictReport, PredictedRow, PredictedTip, TableGap, predict};
 pub use rig::{RigCheckReport, RigExportArgs, RigExportReport, RigFormat, rig_check, rig_export};
 pub use sample::{SampleArgs, SampleReport, write_sample};
 pub use train::{TrainArgs, TrainReport, train};

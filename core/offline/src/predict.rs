@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use plumbline_effects::RigModel;
 use plumbline_effects::rig_model::{ModelEffect, predict_session_with};
 use plumbline_model::predict::{
-    Angles, LocalizationPrediction, PosePrediction, SessionPrediction, TouchPrediction,
+    Angles, LocalizationPrediction, PosePrediction, SessionPrediction, TipOutcome, TipPlace, TouchPrediction,
 };
 use plumbline_model::session::Touchscreen;
 use plumbline_model::{JobContext, Session};
@@ -34,6 +34,8 @@ pub struct PredictReport {
     pub effects: Vec<String>,
     /// Per table how far what was measured lies from what was predicted.
     pub gaps: Vec<TableGap>,
+    /// What became of the rows of each tip or marker of the poses.
+    pub tips: Vec<PredictedTip>,
     /// One per row: touches, then localizations, then poses, each in their order.
     pub rows: Vec<PredictedRow>,
 }
@@ -43,7 +45,7 @@ pub struct PredictReport {
 pub struct TableGap {
     /// `touches`: on the glass, 2D. `localizations`: place inferred from the measurement against
     /// the known place, on the table, 2D, rows that are marked invalid left out. `poses`: in space,
-    /// when a model says where the external frame is.
+    /// when a model says where the external frame is, rows of which the place of the marker is known.
     pub table: &'static str,
     /// Rows that were compared.
     pub rows: usize,
@@ -51,6 +53,35 @@ pub struct TableGap {
     pub mean_mm: f64,
     /// Root of the mean squared distance.
     pub rms_mm: f64,
+}
+
+/// What became of the rows of one tip or marker.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct PredictedTip {
+    /// As the rows name it, else the chain's tip.
+    pub tip: String,
+    /// Number of rows.
+    pub rows: usize,
+    /// `description`: the frame of this name was predicted, and is what was measured. `model`: the marker, where a
+    /// model found it at the frame. `frame`: the frame, although what was measured sits elsewhere and nothing tells
+    /// where. `none`: the rows are not predicted.
+    pub place: &'static str,
+    /// The session that the model found the marker in.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub found_in: Option<String>,
+    /// In words.
+    pub words: String,
+}
+
+impl From<&TipOutcome> for PredictedTip {
+    fn from(outcome: &TipOutcome) -> Self {
+        let found_in = match &outcome.place {
+            TipPlace::Model { session } => Some(session.clone()),
+            _ => None,
+        };
+        let (tip, words) = (outcome.tip.clone(), outcome.words.clone());
+        Self { tip, rows: outcome.rows, place: outcome.place.word(), found_in, words }
+    }
 }
 
 /// The prediction of one row, named like the columns that were measured.
@@ -86,19 +117,20 @@ pub enum PredictedRow {
         /// The place that the model infers from what was measured.
         corrected_z_m: Option<f64>,
     },
-    /// A pose: in the external frame where a model with effects has it, else in the robot's.
+    /// A pose: in the external frame where a model with effects has it, else in the robot's. Null where the robot
+    /// has nothing that the row could have measured, see [`PredictReport::tips`].
     Poses {
         /// Place of the tip.
-        meas_x_m: f64,
+        meas_x_m: Option<f64>,
         /// Place of the tip.
-        meas_y_m: f64,
+        meas_y_m: Option<f64>,
         /// Place of the tip.
-        meas_z_m: f64,
+        meas_z_m: Option<f64>,
         /// How the tip is turned, where the session measured that.
         #[serde(flatten, skip_serializing_if = "Option::is_none")]
         turn: Option<Turn>,
         /// `encoder` or `commanded`.
-        angles: &'static str,
+        angles: Option<&'static str>,
     },
 }
 
@@ -158,6 +190,7 @@ pub fn predict(args: &PredictArgs, context: &dyn JobContext) -> Result<PredictRe
             screen.as_ref(),
             model.external(frame.as_deref()).is_some() && !model.is_nominal(),
         ),
+        tips: predicted.tips.iter().map(PredictedTip::from).collect(),
         rows: rows(&recorded, &predicted),
     })
 }
@@ -200,10 +233,16 @@ fn gaps(
         gaps.extend(gap("localizations", off_m.collect()));
     }
     if let Some(table) = session.poses.as_ref().filter(|_| in_external_frame) {
-        let off_m = table
-            .rows()
-            .zip(&predicted.poses)
-            .filter_map(|(row, prediction)| Some((row.measured?.coords - prediction.tip.coords).norm()));
+        let chain_tip = session.manifest.chain.as_ref().map(|chain| &chain.tip);
+        // A marker whose place nobody knows is not where its frame is.
+        let is_known = |tip: Option<&String>| {
+            let mut of_tip = predicted.tips.iter().filter(|one| Some(&one.tip) == tip.or(chain_tip));
+            !of_tip.any(|one| one.place == TipPlace::Frame)
+        };
+        let known = table.rows().zip(&predicted.poses).filter(|(row, _)| is_known(row.tip.as_ref()));
+        let off_m = known.filter_map(|(row, prediction)| {
+            Some((row.measured?.coords - prediction.as_ref()?.tip.coords).norm())
+        });
         gaps.extend(gap("poses", off_m.collect()));
     }
     gaps
@@ -223,7 +262,8 @@ fn rows(session: &Session, predicted: &SessionPrediction) -> Vec<PredictedRow> {
     let turned = session.poses.as_ref().is_some_and(|table| table.table().has("meas_qw"));
     let touches = predicted.touches.iter().map(touch_row);
     let localizations = predicted.localizations.iter().map(localization_row);
-    touches.chain(localizations).chain(predicted.poses.iter().map(|pose| pose_row(pose, turned))).collect()
+    let poses = predicted.poses.iter().map(|pose| pose_row(pose.as_ref(), turned));
+    touches.chain(localizations).chain(poses).collect()
 }
 
 fn name(angles: Angles) -> &'static str {
@@ -260,14 +300,20 @@ fn localization_row(located: &LocalizationPrediction) -> PredictedRow {
     }
 }
 
-fn pose_row(pose: &PosePrediction, turned: bool) -> PredictedRow {
-    let tip = pose.tip.coords;
-    let turn = turned.then(|| {
+fn pose_row(pose: Option<&PosePrediction>, turned: bool) -> PredictedRow {
+    let turn = pose.filter(|_| turned).map(|pose| {
         // Both signs of a quaternion are the same turn.
         let sign = if pose.turn.w < 0.0 { -1.0 } else { 1.0 };
         let [meas_qw, meas_qx, meas_qy, meas_qz] =
             [pose.turn.w, pose.turn.i, pose.turn.j, pose.turn.k].map(|part| sign * part);
         Turn { meas_qw, meas_qx, meas_qy, meas_qz }
     });
-    PredictedRow::Poses { meas_x_m: tip.x, meas_y_m: tip.y, meas_z_m: tip.z, turn, angles: name(pose.angles) }
+    let tip = pose.map(|pose| pose.tip.coords);
+    PredictedRow::Poses {
+        meas_x_m: tip.map(|tip| tip.x),
+        meas_y_m: tip.map(|tip| tip.y),
+        meas_z_m: tip.map(|tip| tip.z),
+        turn,
+        angles: pose.map(|pose| name(pose.angles)),
+    }
 }

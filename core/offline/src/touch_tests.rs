@@ -192,6 +192,47 @@ fn every_row_is_predicted_and_a_placement_moves_the_prediction() {
 }
 
 #[test]
+fn a_marker_that_nobody_declared_is_told_and_has_no_place() {
+    let desk = Desk::new();
+    let joints =
+        Manifest::read(&desk.session().join(names::MANIFEST)).expect("there").chain.expect("a chain");
+    let head: String = joints.joints.iter().map(|joint| format!("cmd_{joint}_rad,")).collect();
+    let angles = "0.4,".repeat(joints.joints.len());
+    let rows: String = ["", "toe", "toe"].map(|tip| format!("{angles}1,2,3,{tip}\n")).concat();
+    let text = format!("{head}meas_x_m,meas_y_m,meas_z_m,tip\n{rows}");
+    std::fs::write(desk.session().join(names::POSES), text).expect("written");
+    let rows_of = |report: &PredictReport| -> Vec<serde_json::Value> {
+        let json = serde_json::to_value(report).expect("plain");
+        let rows = json["rows"].as_array().expect("rows").clone();
+        rows.into_iter().filter(|row| row["table"] == "poses").collect()
+    };
+    let model = desk.path("rig-model.toml");
+    made_up_model::model_with(&nico(), &[("joint-zero", "r_elbow_y", &[0.03])])
+        .write(&model, &nico())
+        .expect("written");
+    for rig_model in [None, Some(model)] {
+        let report = desk.predict(rig_model).expect("predicted");
+        let poses = rows_of(&report);
+        assert_eq!(poses.len(), 3, "one per row, in order");
+        assert!(poses[0]["meas_x_m"].is_f64() && poses[0]["angles"] == "commanded", "{}", poses[0]);
+        for row in &poses[1..] {
+            assert!(
+                ["meas_x_m", "meas_y_m", "meas_z_m", "angles"].iter().all(|key| row[key].is_null()),
+                "{row}"
+            );
+        }
+        let told: Vec<_> = report.tips.iter().map(|tip| (tip.tip.as_str(), tip.rows, tip.place)).collect();
+        assert_eq!(told, [(joints.tip.as_str(), 1, "description"), ("toe", 2, "none")]);
+        assert!(report.tips[1].words.starts_with("not predicted: "), "{}", report.tips[1].words);
+    }
+    // What was mounted anew sits at no place that anybody told, and is not held against its frame.
+    desk.change(names::MANIFEST, |text| text.replace("[chain]\n", "[chain]\ntip_place = \"unknown\"\n"));
+    let report = desk.predict(Some(desk.path("rig-model.toml"))).expect("predicted");
+    assert_eq!(report.tips[0].place, "frame");
+    assert!(report.gaps.iter().all(|gap| gap.table != "poses"), "{:?}", report.gaps);
+}
+
+#[test]
 fn localizations_come_with_what_the_model_infers() {
     let folder = match measured_data::folder("nico-vision/grid-z5") {
         Ok(folder) => folder,

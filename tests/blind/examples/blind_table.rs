@@ -1,14 +1,19 @@
 //! Makes blind cases, searches each, scores the answers and prints the table.
 //!
 //! `cargo run --release -p plumbline-blind --example blind_table -- [--generator lean|worn|arms|eyes] [--cases N] [--seed S]
-//! [--only single,pair,…] [--plan plain|rich] [--first N] [--no-show] [--list]`
+//! [--only single,pair,…] [--plan plain|rich] [--first N] [--no-show] [--list] [--threads N] [--dump FILE]`
 //!
-//! Cases are kept under `target/blind`, so that a search can be repeated without the physics.
+//! Cases are kept under `target/blind`, so that a search can be repeated without the physics. Without `--threads` there
+//! are as many as the machine runs at a time; the answers do not depend on it (with held-out rows one thing does: rows are
+//! held out one by one only where that is quick). `--dump` writes a line of JSON about each effect that is listed,
+//! [`plumbline_blind::names::Line`].
 
 #![allow(clippy::print_stdout)]
 
+use std::io::Write as _;
+use std::num::NonZeroUsize;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use plumbline_blind::answer::{Answer, Plan, Source};
 use plumbline_blind::bench::Bench;
@@ -18,16 +23,18 @@ use plumbline_blind::hide::{Kinds, Wish};
 use plumbline_blind::physics::Generator;
 use plumbline_blind::recipe::Family;
 use plumbline_blind::score::{Score, Verdict};
-use plumbline_blind::{BlindError, arms, eyes, mix, table, words};
+use plumbline_blind::{BlindError, arms, eyes, mix, names, parallel, table, words};
 use plumbline_gap::Options;
+use serde_json::Value;
 
 #[path = "../judge/mod.rs"]
 mod judge;
+#[path = "../judge/told.rs"]
+mod told;
 use judge::AnyError;
 
 /// Cases are made anew when the physics changes.
 const PHYSICS: &str = "v9";
-const THREADS: usize = 2;
 
 struct Arguments {
     generator: Source,
@@ -38,6 +45,8 @@ struct Arguments {
     first: usize,
     show: bool,
     list: bool,
+    threads: NonZeroUsize,
+    dump: Option<PathBuf>,
 }
 
 fn arguments() -> Result<Arguments, AnyError> {
@@ -50,6 +59,8 @@ fn arguments() -> Result<Arguments, AnyError> {
         first: 0,
         show: true,
         list: false,
+        threads: parallel::all_threads(),
+        dump: None,
     };
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
@@ -63,6 +74,8 @@ fn arguments() -> Result<Arguments, AnyError> {
             "--first" => read.first = value()?.parse()?,
             "--no-show" => read.show = false,
             "--list" => read.list = true,
+            "--threads" => read.threads = value()?.parse().map_err(|why| format!("--threads: {why}"))?,
+            "--dump" => read.dump = Some(value()?.into()),
             other => return Err(format!("{other} is not known: see the head of this file").into()),
         }
     }
@@ -85,40 +98,31 @@ fn main() -> Result<(), AnyError> {
                 && arguments.plan.as_ref().is_none_or(|plan| *plan == words::word(order.plan))
         })
         .collect();
-    make_missing(&orders, &folder);
+    make_missing(&orders, &folder, arguments.threads)?;
     let options = Options { show: arguments.show, advise: false, ..Options::default() };
-    let next = AtomicUsize::new(0);
-    let judged: Vec<Vec<(usize, Result<Verdict, String>)>> = std::thread::scope(|scope| {
-        let work = || {
-            let mut judged = vec![];
-            while let Some(order) = orders.get(next.fetch_add(1, Ordering::Relaxed)) {
-                let verdict =
-                    judge::search(&folder.join("cases").join(format!("{:03}", order.number)), &options)
-                        .map_err(|error| error.to_string());
-                judged.push((order.number, verdict));
-            }
-            judged
-        };
-        let threads: Vec<_> = (0..THREADS)
-            .filter_map(|i| {
-                std::thread::Builder::new().name(format!("search-{i}")).spawn_scoped(scope, work).ok()
-            })
-            .collect();
-        threads.into_iter().filter_map(|thread| thread.join().ok()).collect()
-    });
-    let mut judged: Vec<_> = judged.into_iter().flatten().collect();
-    judged.sort_by_key(|(number, _)| *number);
+    let searched = parallel::in_order(&orders, arguments.threads, "search", |order| {
+        search(&folder.join("cases").join(format!("{:03}", order.number)), &options)
+    })?;
     let mut score = Score::default();
-    for (number, verdict) in &judged {
-        let Ok(answer) = Answer::read(&answer_file(&folder, *number)) else { continue };
-        match verdict {
-            Ok(verdict) => score.count(&answer, verdict),
+    let mut dump =
+        arguments.dump.as_ref().map(std::fs::File::create).transpose()?.map(std::io::BufWriter::new);
+    for (order, searched) in orders.iter().zip(&searched) {
+        let Ok(answer) = Answer::read(&answer_file(&folder, order.number)) else { continue };
+        match searched {
+            Ok((verdict, told)) => {
+                score.count(&answer, verdict);
+                for line in names::lines(&answer, arguments.seed, verdict, told) {
+                    dump.as_mut()
+                        .map_or(Ok(()), |dump| writeln!(dump, "{}", serde_json::to_string(&line)?))?;
+                }
+            }
             Err(why) => score.count_failure(&answer, why),
         }
         if arguments.list {
-            list(&answer, verdict);
+            list(&answer, searched.as_ref().map(|(verdict, _)| verdict));
         }
     }
+    dump.map_or(Ok(()), |mut dump| dump.flush())?;
     println!(
         "{} cases, generator {generator}, seed {}\n\n{}",
         score.cases,
@@ -126,6 +130,14 @@ fn main() -> Result<(), AnyError> {
         table::markdown(&score)
     );
     Ok(())
+}
+
+/// What the search says of a case, and what else it says of each name.
+fn search(case: &Path, options: &Options) -> Result<(Verdict, Vec<Value>), String> {
+    // A case that breaks the search is a case without a verdict, and the others have theirs.
+    let found = catch_unwind(AssertUnwindSafe(|| judge::search_all(&[case], options)));
+    let finding = found.map_err(|_| "the search panicked".to_owned())?.map_err(|error| error.to_string())?;
+    Ok((judge::verdict(&finding), told::told(&finding)))
 }
 
 fn answer_file(folder: &Path, number: usize) -> PathBuf {
@@ -174,30 +186,23 @@ fn of_wishes<'a, K: Kinds + Send + Sync>(
 }
 
 /// Makes the cases that are not there yet.
-fn make_missing(orders: &[Order<'_>], folder: &Path) {
+fn make_missing(orders: &[Order<'_>], folder: &Path, threads: NonZeroUsize) -> std::io::Result<()> {
     let missing: Vec<&Order<'_>> =
         orders.iter().filter(|order| !answer_file(folder, order.number).exists()).collect();
-    let next = AtomicUsize::new(0);
-    std::thread::scope(|scope| {
-        for i in 0..THREADS {
-            let work = || {
-                while let Some(order) = missing.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let made = (order.make)();
-                    let written = match &made {
-                        Ok(case) => case::write(case, &folder.join("cases"), &folder.join("answers")),
-                        Err(_) => Ok(()),
-                    };
-                    if let Some(error) = made.err().or(written.err()) {
-                        eprintln!("case {:03} was not made: {error}", order.number);
-                    }
-                }
-            };
-            let _ = std::thread::Builder::new().name(format!("physics-{i}")).spawn_scoped(scope, work);
+    parallel::in_order(&missing, threads, "physics", |order| {
+        let made = (order.make)();
+        let written = match &made {
+            Ok(case) => case::write(case, &folder.join("cases"), &folder.join("answers")),
+            Err(_) => Ok(()),
+        };
+        if let Some(error) = made.err().or(written.err()) {
+            eprintln!("case {:03} was not made: {error}", order.number);
         }
-    });
+    })?;
+    Ok(())
 }
 
-fn list(answer: &Answer, verdict: &Result<Verdict, String>) {
+fn list(answer: &Answer, verdict: Result<&Verdict, &String>) {
     let hidden: Vec<String> =
         answer.hidden.iter().map(|hidden| format!("{} {:.1}σ", hidden.named(), hidden.size_sigmas)).collect();
     let said = match verdict {
@@ -213,9 +218,9 @@ fn list(answer: &Answer, verdict: &Result<Verdict, String>) {
                 .collect();
             format!("{} {} ({:.1} s)", verdict.verdict, names.join(", "), verdict.seconds.unwrap_or(f64::NAN))
         }
-        Err(why) => why.clone(),
+        Err(why) => why.to_owned(),
     };
-    let outside = verdict.as_ref().map_or_else(|_| vec![], |verdict| sizes(answer, verdict));
+    let outside = verdict.map_or_else(|_| vec![], |verdict| sizes(answer, verdict));
     let outside = if outside.is_empty() { String::new() } else { format!(" SIZES {}", outside.join(", ")) };
     println!(
         "{:03} {} {}{}: {} → {said}{outside}",

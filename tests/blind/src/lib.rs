@@ -9,7 +9,7 @@
 //! - [`recipe`], [`mix`]: which cases shall be made.
 //! - [`case`]: cases drawn by chance, their sessions and their answers.
 //! - [`hide`]: what a case of other scenes hides: [`arms`], drawn by chance and measured from outside, and [`eyes`].
-//! - [`score`], [`table`]: who found what; [`followed`]: where the experiments lead that the search asks for.
+//! - [`score`], [`table`], [`names`]: who found what; [`followed`]: where the experiments lead that the search asks for.
 
 pub mod answer;
 pub mod arms;
@@ -23,6 +23,8 @@ mod heat;
 pub mod hide;
 pub mod measure;
 pub mod mix;
+pub mod names;
+pub mod parallel;
 pub mod physics;
 pub mod recipe;
 pub mod score;

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::answer::{Answer, Hidden};
+use crate::names::{Rightness, rightness};
 use crate::recipe::Family;
 
 /// A name that is stated with more than this is confident.
@@ -50,11 +51,11 @@ pub struct Found {
 }
 
 impl Found {
-    fn name(&self) -> String {
+    pub(crate) fn name(&self) -> String {
         plain(&format!("{}@{}", self.id, self.site))
     }
 
-    fn may_be(&self, name: &str) -> bool {
+    pub(crate) fn may_be(&self, name: &str) -> bool {
         self.name() == name || self.class.iter().any(|member| plain(member) == name)
     }
 }
@@ -71,7 +72,7 @@ impl Verdict {
 }
 
 /// An effect without a site is written with or without the sign.
-fn plain(name: &str) -> String {
+pub(crate) fn plain(name: &str) -> String {
     name.trim_end_matches('@').to_owned()
 }
 
@@ -226,35 +227,18 @@ impl Score {
         if !verdict.names() {
             return;
         }
-        let there: Vec<String> = answer
-            .hidden
-            .iter()
-            .map(Hidden::named)
-            .chain(answer.dirt.iter().chain(&answer.also).cloned())
-            .map(|n| plain(&n))
-            .collect();
-        // A name in the place of what is hidden is not right because a trace of it is there as well.
-        let own = |found: &Found| answer.hidden.iter().any(|hidden| plain(&hidden.named()) == found.name());
-        let is_trace = |found: &Found| answer.dirt.iter().any(|dirt| plain(dirt) == found.name());
-        let stands_for = |found: &Found| {
-            let unnamed = answer.hidden.iter().map(|hidden| plain(&hidden.named()));
-            let mut unnamed =
-                unnamed.filter(|hidden| verdict.effects.iter().all(|other| other.name() != *hidden));
-            unnamed.any(|hidden| found.may_be(&hidden))
-        };
-        for found in &verdict.effects {
-            let is_in_its_place = !own(found) && is_trace(found) && stands_for(found);
-            let exact = there.contains(&found.name()) && !is_in_its_place;
-            let among = there.iter().any(|name| found.may_be(name));
-            self.wrong_names.count(!among);
+        for (found, Rightness { is_exact, is_among }) in
+            verdict.effects.iter().zip(rightness(answer, verdict))
+        {
+            self.wrong_names.count(!is_among);
             if found.probability > CONFIDENT {
-                self.wrong_confident.count(!among);
+                self.wrong_confident.count(!is_among);
             }
             let bin = ((found.probability * BINS as f64) as usize).min(BINS - 1);
             let (sum, names, right) = &mut self.stated[bin];
             *sum += found.probability;
             *names += 1;
-            *right += usize::from(exact);
+            *right += usize::from(is_exact);
             self.stated_variance[bin] += found.probability * (1.0 - found.probability);
         }
     }

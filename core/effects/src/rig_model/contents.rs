@@ -144,6 +144,13 @@ pub struct PlacedExternal {
     pub tip_from_marker: Isometry3<f64>,
 }
 
+impl PlacedExternal {
+    /// Whether the marker was found elsewhere than at the tip's frame.
+    pub fn is_mounted_anew(&self) -> bool {
+        !is_nothing(&self.tip_from_marker)
+    }
+}
+
 fn is_nothing(motion: &Isometry3<f64>) -> bool {
     *motion == Isometry3::identity()
 }

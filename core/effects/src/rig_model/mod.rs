@@ -18,6 +18,7 @@ mod reach;
 mod reach_laws;
 #[cfg(test)]
 mod tests;
+mod tips;
 mod together;
 
 use jiff::Timestamp;

@@ -6,13 +6,13 @@ use plumbline_model::robot::Rig;
 use plumbline_model::session::{LocalizationTable, Screen, Session, TouchTable, Touchscreen};
 use plumbline_model::{Pixel, Point};
 
-use super::{PlacedExternal, PlacedScreen, RigModel};
+use super::{PlacedExternal, PlacedScreen, RigModel, tips};
 use crate::arm::Arm;
 use crate::eyes::Eyes;
 use crate::forward::Assumed;
 use crate::library::{Present, Surface};
 use crate::looking::Looking;
-use crate::measurements::{Measurements, What};
+use crate::measurements::{LeftOut, Measurements, What};
 
 /// Predicts every row of a session as [`predict_session`] does, with the effects of a model. Touches
 /// are projected onto `screen`, or onto the screen where the model has it for this session; poses are
@@ -35,8 +35,15 @@ pub fn predict_session_with(
     let mut prediction = predict_session(session, rig, screen)?;
     let filled = filled(session, &prediction);
     // What is wrong with the session was said already; what is left is that no row can be used.
-    let Ok(mut measurements) = Measurements::of_sessions(&[(String::new(), filled)], rig) else {
-        return Ok(prediction);
+    let mut measurements = match Measurements::of_sessions(&[(String::new(), filled)], rig) {
+        Ok(measurements) => measurements,
+        Err(error) => {
+            let rows = 0..prediction.poses.len();
+            let table = What::Pose.table();
+            let left_out = |row| LeftOut { session: 0, table: table.to_owned(), row, why: error.to_string() };
+            tips::tell(session, &rows.map(left_out).collect::<Vec<_>>(), None, &mut prediction);
+            return Ok(prediction);
+        }
     };
     let tip = session.manifest.chain.as_ref().map(|chain| chain.tip.as_str());
     let apparatus = &mut measurements.apparatuses[0];
@@ -67,7 +74,7 @@ pub fn predict_session_with(
             }
             What::Pose | What::OrientedPose => {
                 let Some(at) = measurements.external_from_tip(row, &outside) else { continue };
-                let pose = &mut prediction.poses[row.row];
+                let Some(pose) = &mut prediction.poses[row.row] else { continue };
                 let [x, y, z] = at.translation.vector.into();
                 pose.tip = Point::new(x, y, z);
                 pose.turn = at.rotation;
@@ -83,6 +90,7 @@ pub fn predict_session_with(
             }
         }
     }
+    tips::tell(session, &measurements.left_out, external, &mut prediction);
     Ok(prediction)
 }
 
@@ -214,7 +222,7 @@ fn filled(session: &Session, nominal: &SessionPrediction) -> Session {
             .rows()
             .zip(&nominal.poses)
             .map(|(mut row, nominal)| {
-                row.measured = row.measured.or(Some(Point::from(nominal.tip.coords)));
+                row.measured = row.measured.or(nominal.map(|nominal| Point::from(nominal.tip.coords)));
                 row
             })
             .collect();

@@ -1,7 +1,7 @@
 //! Sessions are predicted with the effects of a model.
 
 use nalgebra::{Isometry3, Vector3};
-use plumbline_model::predict::predict_session;
+use plumbline_model::predict::{SessionPrediction, TipPlace, predict_session};
 use plumbline_model::robot::Rig;
 use plumbline_model::session::{
     Chain, LocalizationRow, LocalizationTable, Manifest, PoseRow, PoseTable, RigReference, Session, TouchRow,
@@ -98,7 +98,7 @@ fn effects_of_size_zero_change_nothing() {
         assert!(a.touch.distance_px(&b.touch) < 1e-9 && (a.above_glass_m - b.above_glass_m).abs() < 1e-12);
         assert_eq!(a.angles, b.angles);
     }
-    for (a, b) in nominal.poses.iter().zip(&same.poses) {
+    for (a, b) in nominal.poses.iter().flatten().zip(same.poses.iter().flatten()) {
         assert!(a.tip.distance_m(&b.tip) < 1e-12);
     }
     for (a, b) in nominal.localizations.iter().zip(&same.localizations) {
@@ -136,7 +136,8 @@ fn a_wrong_zero_is_the_nominal_robot_with_another_angle() {
         assert!(a.touch.distance_px(&b.touch) < 1e-6 && (a.above_glass_m - b.above_glass_m).abs() < 1e-9);
     }
     let plain = predict_session(&session, &rig, None).expect("predicted");
-    assert!(plain.poses.iter().zip(&predicted.poses).all(|(a, b)| a.tip.distance_m(&b.tip) > 1e-3));
+    let mut poses = plain.poses.iter().flatten().zip(predicted.poses.iter().flatten());
+    assert!(poses.all(|(a, b)| a.tip.distance_m(&b.tip) > 1e-3));
 }
 
 #[test]
@@ -182,11 +183,11 @@ fn poses_are_in_the_frame_of_their_label_and_of_the_marker_that_was_mounted_anew
         let text = std::fs::read_to_string(&file).expect("readable");
         std::fs::write(&file, text.replace("[chain]\n", keys)).expect("written");
         let read = Session::read(folder.path()).expect("a session");
-        predict_session_with(&read, &rig, None, &model).expect("predicted").poses
+        predict_session_with(&read, &rig, None, &model).expect("predicted")
     };
     let plain = of("[external]\nframe = \"yard\"\n[chain]\n");
     let anew = of("[external]\nframe = \"hall\"\n[chain]\ntip_place = \"unknown\"\n");
-    for (plain, anew) in plain.iter().zip(&anew) {
+    for (plain, anew) in plain.poses.iter().flatten().zip(anew.poses.iter().flatten()) {
         let tip = yard.inverse() * plain.tip.coords;
         let robot_from_tip = Isometry3::from_parts(tip.coords.into(), plain.turn);
         let marker = hall * robot_from_tip * mount;
@@ -194,6 +195,44 @@ fn poses_are_in_the_frame_of_their_label_and_of_the_marker_that_was_mounted_anew
         assert!(marker.rotation.angle_to(&anew.turn) < 1e-9);
     }
     assert!(model.external(Some("roof")).is_none(), "nobody placed that frame");
+    // Which place was taken is told: the frame's, the marker's, or the frame's although the marker sits elsewhere.
+    let place = |told: &SessionPrediction| told.tips.iter().map(|one| one.place.clone()).collect::<Vec<_>>();
+    assert_eq!(place(&plain), [TipPlace::Description]);
+    assert_eq!(place(&anew), [TipPlace::Model { session: "first".to_owned() }]);
+    let elsewhere = of("[external]\nframe = \"yard\"\n[chain]\ntip_place = \"unknown\"\n");
+    assert_eq!(place(&elsewhere), [TipPlace::Frame]);
+    let silent = of("[external]\nframe = \"hall\"\n[chain]\n");
+    assert!(silent.tips[0].words.contains("that was not used"), "{}", silent.tips[0].words);
+}
+
+/// The nominal place of such a row stands in the robot's frame, the others in the external one.
+#[test]
+fn rows_of_the_other_arm_are_not_predicted_with_the_model_of_this_one() {
+    const OTHER: &str = "left_palm_center";
+    let rig = nico();
+    let model = with(&rig, vec![effect("joint-zero", "r_elbow_y", &[0.04])]);
+    let both: Vec<String> =
+        joints().into_iter().chain(joints().iter().map(|joint| joint.replacen('r', "l", 1))).collect();
+    let row = |tip: Option<&str>| PoseRow {
+        encoder_rad: [POINTING_RAD, POINTING_RAD].concat().into_iter().map(Some).collect(),
+        measured: Some(Point::new(1.0, 2.0, 3.0)),
+        tip: tip.map(str::to_owned),
+        ..PoseRow::default()
+    };
+    for tips in [[None, Some(OTHER)], [Some(OTHER); 2]] {
+        let mut session = session(&rig);
+        (session.touches, session.localizations) = (None, None);
+        session.manifest.chain = Some(Chain { tip: TIP.to_owned(), joints: both.clone() });
+        session.poses = Some(PoseTable::from_rows(both.clone(), &tips.map(row)));
+        let nominal = predict_session(&session, &rig, None).expect("predicted");
+        assert!(nominal.poses.iter().all(Option::is_some), "its joints were logged");
+        let predicted = predict_session_with(&session, &rig, None, &model).expect("predicted");
+        let is_there: Vec<bool> = predicted.poses.iter().map(Option::is_some).collect();
+        assert_eq!(is_there, tips.map(|tip| tip.is_none()));
+        let told = predicted.tips.iter().find(|one| one.tip == OTHER).expect("told");
+        assert!(told.place == TipPlace::Nowhere && told.words.starts_with("not predicted: "), "{told:?}");
+        assert_eq!(predicted.tips.iter().map(|one| one.rows).sum::<usize>(), 2);
+    }
 }
 
 #[test]
@@ -217,7 +256,7 @@ fn the_models_screen_and_external_frame_are_used() {
             (tip(&rig.touchscreen, a.touch, a.above_glass_m), tip(lies, b.touch, b.above_glass_m));
         assert!((on_nominal - on_placed).norm() < 1e-9 && a.touch.distance_px(&b.touch) > 10.0);
     }
-    for (a, b) in without.poses.iter().zip(&placed.poses) {
+    for (a, b) in without.poses.iter().flatten().zip(placed.poses.iter().flatten()) {
         assert!(((motion * a.tip.coords) - b.tip.coords).norm() < 1e-12);
     }
     // A screen that is given is used in any case.

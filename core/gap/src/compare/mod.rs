@@ -6,6 +6,7 @@ mod drift;
 mod frames;
 mod instrument;
 mod lack_of_fit;
+mod levers;
 mod neighbors;
 mod noise;
 mod oddities;
@@ -124,7 +125,7 @@ pub(crate) fn compare(
     context.checkpoint()?;
     context.report(0.4, "measuring the noise");
     instrument::check(measurements, &residuals)?;
-    let noise = noise::floor_of(measurements, &residuals);
+    let noise = noise::floor_of(measurements, &assumed, &residuals);
     warn_of_noise(&noise.floor, &mut warnings);
     let covariates = Covariates::of(measurements);
     context.report(0.5, "testing for a gap");

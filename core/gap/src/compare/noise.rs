@@ -7,10 +7,12 @@
 use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
+use plumbline_effects::Assumed;
 use plumbline_effects::measurements::{Measurements, Unit, What};
 use plumbline_model::decompose;
 
 use super::drift::{Deviation, Drift, drift};
+use super::levers::levers;
 use super::neighbors::Points;
 use super::structure::{Repeat, Structure, structure, wobble};
 use crate::finding::FloorSource;
@@ -46,8 +48,8 @@ pub struct Noise {
     pub structure: Option<Structure>,
 }
 
-/// The floor of rows with these residuals (`None`: not predictable, or an outlier).
-pub fn floor_of(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> Noise {
+/// The floor of rows with these residuals (`None`: not predictable, or an outlier) under a model.
+pub fn floor_of(measurements: &Measurements, assumed: &Assumed, residuals: &[Option<Vec<f64>>]) -> Noise {
     let mut kinds = vec![];
     let mut repeated = vec![];
     let mut source = FloorSource::Repeats;
@@ -58,7 +60,7 @@ pub fn floor_of(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> 
             continue;
         }
         let repeats = within_cells(measurements, residuals, what).map(|(mut repeats, course)| {
-            let other = structure_within(measurements, residuals, what, repeats.degrees_of_freedom);
+            let other = structure_within(measurements, assumed, residuals, what, repeats.degrees_of_freedom);
             // The surer of both says what is noise.
             let left = match (&course, &other) {
                 (Some(course), Some(other)) if other.p_value < course.p_value => &other.left[..],
@@ -221,14 +223,18 @@ fn within_cells(
 }
 
 /// What repeats of any kind still depend on under a model with these residuals: the largest.
-pub fn structure_of(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> Option<Structure> {
+pub fn structure_of(
+    measurements: &Measurements,
+    assumed: &Assumed,
+    residuals: &[Option<Vec<f64>>],
+) -> Option<Structure> {
     let of = |what: What| -> Option<Structure> {
         if let Some(wobble) = watched_wobble(measurements, residuals, what) {
             return Some(wobble);
         }
         let (repeats, course) = within_cells(measurements, residuals, what)?;
         let course = course.map(|course| Structure::new("time".to_owned(), course.p_value, course.left));
-        let other = structure_within(measurements, residuals, what, repeats.degrees_of_freedom);
+        let other = structure_within(measurements, assumed, residuals, what, repeats.degrees_of_freedom);
         course.into_iter().chain(other).max_by(|a, b| a.size_sigmas.total_cmp(&b.size_sigmas))
     };
     let all = What::ALL.into_iter().filter(|what| measurements.has(*what)).filter_map(of);
@@ -284,7 +290,7 @@ fn of_stands(measurements: &Measurements, residuals: &[Option<Vec<f64>>], what: 
         }
         let mean = |c: usize| together.iter().map(|(.., off)| off[c]).sum::<f64>() / together.len() as f64;
         let off = (0..what.len()).map(mean).collect();
-        Repeat { cell, when: together[0].1, turned_rad: vec![], temperature_c: None, off }
+        Repeat { cell, when: together[0].1, turned_rad: vec![], temperature_c: None, off, levers: vec![] }
     };
     looks.into_values().map(one).collect()
 }
@@ -292,6 +298,7 @@ fn of_stands(measurements: &Measurements, residuals: &[Option<Vec<f64>>], what: 
 /// What repeats of one kind depend on, of the session with most of them.
 fn structure_within(
     measurements: &Measurements,
+    assumed: &Assumed,
     residuals: &[Option<Vec<f64>>],
     what: What,
     free: f64,
@@ -304,7 +311,7 @@ fn structure_within(
     let share =
         |own: &[usize]| own.len() as f64 / sessions.values().map(Vec::len).sum::<usize>().max(1) as f64;
     let (session, rows) = sessions.iter().max_by_key(|(_, own)| own.len())?;
-    let repeats = repeats(measurements, residuals, rows);
+    let repeats = repeats(measurements, assumed, residuals, rows);
     let apparatus = &measurements.apparatuses[*session];
     let parts = if what.is_placed() {
         apparatus.arm.as_ref().map(|arm| &arm.parts)
@@ -317,7 +324,12 @@ fn structure_within(
 }
 
 /// Rows of cells with repeats, in their order, less the mean of their cell.
-fn repeats(measurements: &Measurements, residuals: &[Option<Vec<f64>>], rows: &[usize]) -> Vec<Repeat> {
+fn repeats(
+    measurements: &Measurements,
+    assumed: &Assumed,
+    residuals: &[Option<Vec<f64>>],
+    rows: &[usize],
+) -> Vec<Repeat> {
     let timed = rows.iter().all(|&i| measurements.rows[i].t_secs.is_some());
     let mut ordered = rows.to_vec();
     if timed {
@@ -356,6 +368,7 @@ fn repeats(measurements: &Measurements, residuals: &[Option<Vec<f64>>], rows: &[
             turned_rad,
             temperature_c: warmth.map(|all| all.iter().sum::<f64>() / all.len() as f64).or(row.ambient_c),
             off: residual.iter().zip(sum).map(|(value, sum)| value - sum / count).collect(),
+            levers: levers(measurements, assumed, i),
         });
     }
     all

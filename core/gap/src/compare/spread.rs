@@ -1,6 +1,6 @@
 //! What the spread of repeats loses when it is fitted by something that was logged.
 
-use nalgebra::{Cholesky, DMatrix};
+use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::statistics::f_tail;
 
@@ -40,6 +40,36 @@ impl Spread {
         let widest = before.iter().copied().fold(0.0, f64::max);
         let counted = (0..before.len()).filter(|&c| before[c] > LEAST_SPREAD * widest).collect();
         Self { values, free, before, counted }
+    }
+
+    /// Degrees of freedom of each coordinate.
+    pub fn free(&self) -> f64 {
+        self.free
+    }
+
+    /// Standard deviation of each coordinate.
+    pub fn scales(&self) -> Vec<f64> {
+        self.before.iter().map(|square| (square / self.free).sqrt().max(1e-300)).collect()
+    }
+
+    /// Coordinates that spread, one after the other, in units of their spread.
+    pub fn whitened(&self) -> DVector<f64> {
+        let (rows, scales) = (self.values.nrows(), self.scales());
+        DVector::from_fn(rows * self.counted.len(), |at, _| {
+            let c = self.counted[at / rows];
+            self.values[(at % rows, c)] / scales[c]
+        })
+    }
+
+    /// [`Left::shares`] of what a fit left of [`Self::whitened`], with so many parameters of each coordinate.
+    pub fn shares_of(&self, left: &DVector<f64>, used: f64) -> Vec<f64> {
+        let rows = self.values.nrows();
+        let mut shares = vec![1.0; self.before.len()];
+        for (k, &c) in self.counted.iter().enumerate() {
+            let after = left.rows(k * rows, rows).norm_squared();
+            shares[c] = (after / (self.free - used).max(1.0)).min(1.0);
+        }
+        shares
     }
 
     /// Fitted by these columns, by least squares; `None` where they cannot be told apart.

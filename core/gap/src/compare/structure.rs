@@ -6,6 +6,7 @@
 
 use nalgebra::DMatrix;
 
+use super::levers::by_levers;
 use super::spread::{FEWEST, SIGNIFICANT, Spread};
 use crate::statistics::robust_sd;
 
@@ -16,9 +17,9 @@ const ROWS_PER_TURN: usize = 6;
 const LOOKS_PER_TURN: usize = 4;
 const FEWEST_LOOKS: usize = 16;
 /// A joint that came from further away than this came all the way from one side, rad.
-const SIDE_RAD: f64 = 0.02;
+pub const SIDE_RAD: f64 = 0.02;
 /// A covariate that repeats hardly differ in (share of its variance) says nothing.
-const LEAST_WITHIN: f64 = 0.05;
+pub const LEAST_WITHIN: f64 = 0.05;
 /// Deviations beyond this many robust standard deviations count as that far.
 const FAR: f64 = 4.0;
 
@@ -32,6 +33,8 @@ pub struct Repeat {
     /// Mean temperature, °C.
     pub temperature_c: Option<f64>,
     pub off: Vec<f64>,
+    /// What the turn of each joint does to each coordinate, where that differs from pose to pose; else empty.
+    pub levers: Vec<Vec<f64>>,
 }
 
 /// What repeats depend on.
@@ -64,9 +67,10 @@ pub fn structure(rows: &[Repeat], free: f64, when: &str, joints: &[String]) -> O
         return None;
     }
     let spread = Spread::new(tamed(rows, width), free);
+    let has_levers = rows.iter().all(|row| !row.levers.is_empty());
     let tried = covariates(rows, when, joints);
-    let fits = tried.len();
-    let mut best: Option<Structure> = None;
+    let fits = tried.len() + if has_levers { joints.len() } else { 0 };
+    let mut best = if has_levers { by_levers(rows, &spread, joints, fits) } else { None };
     for (on, columns) in tried {
         let Some(design) = within_cells(rows, &columns) else { continue };
         let Some(left) = spread.fitted_by(&design) else { continue };
@@ -173,7 +177,7 @@ mod tests {
                 let (when, turned) = (7.0 * f64::from(i), random.random_range(-0.5..0.5));
                 let off = vec![off[0] + of(when, turned), off[1]];
                 let cell = usize::try_from(i % 40).expect("small");
-                Repeat { cell, when, turned_rad: vec![turned], temperature_c: None, off }
+                Repeat { cell, when, turned_rad: vec![turned], temperature_c: None, off, levers: vec![] }
             })
             .collect();
         for cell in 0..40 {

@@ -265,6 +265,9 @@ impl Finish<'_> {
             })
             .collect();
         all.sort_by(|a, b| b.share.total_cmp(&a.share));
+        // A step is tried at many angles, and is told once.
+        let mut told = std::collections::HashSet::new();
+        all.retain(|one| told.insert((one.on.clone(), one.of.clone())));
         all.truncate(MOST_DEPENDENCES);
         all
     }

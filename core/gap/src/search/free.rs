@@ -7,6 +7,7 @@ use plumbline_effects::measurements::{Measurements, What};
 
 use super::library::{Block, Library};
 use super::linear::Linear;
+use super::steps::steps;
 use crate::covariates::Covariates;
 
 /// Smooth functions of each covariate.
@@ -108,8 +109,8 @@ pub(super) fn rivals(
             }
         }
     }
-    // Each is as probable as every other one. What joints do by each other adds to that, all others of one joint
-    // together as much as one rival.
+    // Each is as probable as every other one. What joints do by each other and in steps adds to that, all others, and
+    // all steps, of one joint together as much as one rival.
     let each = UNKNOWN / rivals.len().max(1) as f64;
     let mut shares = vec![each; rivals.len()];
     for (rival, own, among) in of_other_joints(measurements, covariates, library, linear) {
@@ -143,8 +144,9 @@ pub(super) fn rivals(
     (rivals, blocks, matrix)
 }
 
-/// Of an arm that is measured from outside: the turn of each joint by how far it came (a joint that remembers), and by
-/// the angle of another one (what a cable pulls at). With each, how many of its sort the joint has.
+/// Of an arm that is measured from outside: the turn of each joint by how far it came (a joint that remembers), by the
+/// angle of another one (what a cable pulls at), and in a step at an angle of its own (what catches). With each, how many
+/// of its sort the joint has.
 fn of_other_joints(
     measurements: &Measurements,
     covariates: &Covariates,
@@ -166,6 +168,11 @@ fn of_other_joints(
         let title = effect.title.split(':').next().unwrap_or_default();
         let Some(own) = titles.iter().position(|known| *known == title) else { continue };
         let base = base(measurements, linear, &Moved::Column(linear.gauge + block.start));
+        let (columns, among) = steps(measurements, linear, &base, own);
+        for column in columns {
+            let rival = Rival { of: format!("turn of {title}"), on: format!("angle of {title}, in a step") };
+            found.push((rival, vec![column.into_iter().map(|value| LARGE * value).collect()], among));
+        }
         let mut add = |on: String, value: &dyn Fn(usize) -> Option<f64>, count: usize, among: usize| {
             if let Some(columns) = functions(linear, covariates, &base, value, None, count) {
                 found.push((Rival { of: format!("turn of {title}"), on }, columns, among));

@@ -3,7 +3,7 @@
 //! - [`linear`]: whitened residuals and tangents of all rows, and what they add up to;
 //! - [`field`]: the evidence of any set of effects from those sums;
 //! - [`explore`]: the search through sets;
-//! - [`free`]: rivals that are in no library;
+//! - [`free`], [`steps`]: rivals that are in no library;
 //! - [`refit`]: the fit through the forward model;
 //! - [`sizes`]: how far sizes may be off by shapes and companions;
 //! - [`naming`], [`knowledge`]: from sets with probabilities to names, classes, words.
@@ -22,6 +22,7 @@ mod masses;
 mod naming;
 mod refit;
 mod sizes;
+mod steps;
 #[cfg(test)]
 mod tests;
 mod undetermined;

@@ -49,6 +49,8 @@ const UNSEEN: f64 = 0.035;
 /// Lack of fit that vetoes names: probability by chance, and how much larger than noise the rest is.
 const VETO_P: f64 = 1e-4;
 const VETO_SIZE: f64 = 0.45;
+/// Formulas are right to this share of what they explain: what is left below it is theirs, as for rivals.
+const FORMULA_SHARE: f64 = RIVAL_SHARE;
 /// A gap of this size (floors) that gets no name is unexplained.
 const NO_DIRT: f64 = 0.4;
 /// Cells off by this, dirt, are no lack of fit.
@@ -98,12 +100,16 @@ impl Evidence<'_> {
         let (p_value, left) = self.lack_of_fit(of_library.map_or(&top, |model| &model.set));
         let large = (RIVAL_SHARE * self.look.gap()).max(RIVAL_SIZE);
         let best = self.alone.and_then(|alone| alone.models.first()).or(of_library);
+        // Few parameters that close as much as many speak for themselves where no set without them is left in the window, unless
+        // every joint is off by itself anyway.
+        let has_family = best.is_some_and(|best| self.has_family(best));
+        let is_needed = of_library.is_none() && !has_family;
         let counts = |model: &&Model| match self.floor.source {
-            FloorSource::Fitted => self.closes_more(model, best),
+            FloorSource::Fitted => is_needed && self.has_rival(model) || self.closes_more(model, best),
             _ => p_value < RIVAL_P && self.rival_does(model) > large,
         };
         let rival: f64 = models.iter().filter(counts).map(|model| model.probability).sum();
-        let vetoed = p_value < VETO_P && left > VETO_SIZE;
+        let vetoed = p_value < VETO_P && left > VETO_SIZE.max(FORMULA_SHARE * self.look.gap());
         let unknown = rival.max(if vetoed { 0.95 } else { 0.0 }).max(self.white()).min(1.0);
         // Whether or not a rival counts as something unknown, it may stand where an effect belongs: what can
         // be said of the library is what it does best without one.
@@ -113,39 +119,14 @@ impl Evidence<'_> {
         self.named(unknown, p_value)
     }
 
-    /// Names what the most probable set has.
+    /// Names what the most probable set has, or, where some of that gets no name although it does much, another set that
+    /// has all those names and no such rest.
     fn named(&self, unknown: f64, p_value: f64) -> Named {
         let names = self.of_names();
         let top: Vec<usize> = self.explored.models.first().map_or(vec![], |model| self.of_library(model));
-        let values = self.values(&top);
-        let mut found = vec![];
-        let sizes: Vec<f64> =
-            top.iter().zip(&values).map(|(&block, (own, _))| self.look.does(block, own)).collect();
-        let largest = sizes.iter().copied().fold(0.0, f64::max);
-        // Without repeats the floor may be off; what matters is the noise that was found.
-        let likely = self.look.fields.get(self.look.likely(self.explored));
-        let noise = likely.map_or(1.0, |field| field.variant.noise.min(1.0));
-        for (place, &block) in top.iter().enumerate() {
-            let (own, covariance) = &values[place];
-            let size = sizes[place];
-            let least = noise * if size >= largest { SMALLEST_FIRST } else { SMALLEST };
-            let grows = self.library.effects[block].growth().is_some();
-            let cancelling = if grows { CANCELLING_GROWN } else { CANCELLING };
-            if size < least || size > cancelling * self.look.gap() + SMALLEST {
-                continue;
-            }
-            let mut effect = self.effect(&top, block, own, covariance, size, &names);
-            if effect.class_probability >= NAMED_FROM {
-                let beside_all = |&other: &usize| other != block && self.look.blocks[other].is_of_all;
-                if effect.id == Kind::EarlyLog.id() && top.iter().any(beside_all) {
-                    effect.title.push_str(OTHERWISE_THAN_ALL);
-                }
-                if let Some(whole) = self.is_left_of_a_drag(&top, &sizes, place) {
-                    effect.probability *= PLAY_OR_DRAG;
-                    effect.class = with_whole(effect.class, &self.library.effects[whole]);
-                }
-                found.push((block, effect));
-            }
+        let (mut found, rest) = self.names_of(&top, &names);
+        if rest > 0 {
+            found = self.without_rest(&found, &names).unwrap_or(found);
         }
         found.sort_by(|a, b| b.1.size_sigmas.total_cmp(&a.1.size_sigmas));
         let (blocks, effects): (Vec<usize>, Vec<NamedEffect>) = found.into_iter().unzip();
@@ -168,6 +149,66 @@ impl Evidence<'_> {
             effect.class_probability *= doubt;
         }
         Named { verdict, effects, blocks, names, unknown, p_value }
+    }
+
+    /// The effects of a set that get a name, and how many others do much and get none: nothing tells what they are, or they
+    /// cancel each other.
+    fn names_of(&self, set: &[usize], names: &[f64]) -> (Vec<(usize, NamedEffect)>, usize) {
+        let values = self.values(set);
+        let (mut found, mut rest) = (vec![], 0);
+        let sizes: Vec<f64> =
+            set.iter().zip(&values).map(|(&block, (own, _))| self.look.does(block, own)).collect();
+        let largest = sizes.iter().copied().fold(0.0, f64::max);
+        // Without repeats the floor may be off; what matters is the noise that was found.
+        let likely = self.look.fields.get(self.look.likely(self.explored));
+        let noise = likely.map_or(1.0, |field| field.variant.noise.min(1.0));
+        for (place, &block) in set.iter().enumerate() {
+            let (own, covariance) = &values[place];
+            let size = sizes[place];
+            let least = noise * if size >= largest { SMALLEST_FIRST } else { SMALLEST };
+            let grows = self.library.effects[block].growth().is_some();
+            let cancelling = if grows { CANCELLING_GROWN } else { CANCELLING };
+            if size < least {
+                continue;
+            }
+            if size > cancelling * self.look.gap() + SMALLEST {
+                rest += 1;
+                continue;
+            }
+            let mut effect = self.effect(set, block, own, covariance, size, names);
+            if effect.class_probability >= NAMED_FROM {
+                let beside_all = |&other: &usize| other != block && self.look.blocks[other].is_of_all;
+                if effect.id == Kind::EarlyLog.id() && set.iter().any(beside_all) {
+                    effect.title.push_str(OTHERWISE_THAN_ALL);
+                }
+                if let Some(whole) = self.is_left_of_a_drag(set, &sizes, place) {
+                    effect.probability *= PLAY_OR_DRAG;
+                    effect.class = with_whole(effect.class, &self.library.effects[whole]);
+                }
+                found.push((block, effect));
+            } else {
+                rest += 1;
+            }
+        }
+        (found, rest)
+    }
+
+    /// Names of the most probable set, of those that cannot be told from the first one, that gives all of these names and
+    /// leaves no such rest.
+    fn without_rest(
+        &self,
+        found: &[(usize, NamedEffect)],
+        names: &[f64],
+    ) -> Option<Vec<(usize, NamedEffect)>> {
+        let (first, others) = self.explored.models.split_first()?;
+        let name = |block: usize| self.look.blocks[block].name;
+        let near = others.iter().filter(|model| model.probability * SAME_CLASS_ODDS > first.probability);
+        let mut all = near.map(|model| self.names_of(&self.of_library(model), names));
+        let has_all = |other: &[(usize, NamedEffect)]| {
+            found.iter().all(|(own, _)| other.iter().any(|(block, _)| name(*block) == name(*own)))
+        };
+        all.find(|(other, rest)| *rest == 0 && other.len() > found.len() && has_all(other))
+            .map(|(all, _)| all)
     }
 
     /// Whether one name stands for its class. Where every joint may be wrong and one of them as well, the most probable is
@@ -208,6 +249,14 @@ impl Evidence<'_> {
         kinds.map(|kind| kind.degrees_of_freedom * kind.sd.len() as f64).sum::<f64>().max(4.0)
     }
 
+    fn has_family(&self, model: &Model) -> bool {
+        model.set.iter().any(|&block| self.look.blocks[block].is_family)
+    }
+
+    fn has_rival(&self, model: &Model) -> bool {
+        model.set.iter().any(|&block| block >= self.look.effects)
+    }
+
     /// What a rival in the set does to the rows, in floors; zero without one.
     fn rival_does(&self, model: &Model) -> f64 {
         let Some(place) = model.set.iter().position(|&block| block >= self.look.effects) else { return 0.0 };
@@ -222,8 +271,7 @@ impl Evidence<'_> {
             return false;
         };
         // Where every joint is off by itself, one more that is off is no other thing: it is a class already.
-        let is_of_every_site = library.set.iter().any(|&block| self.look.blocks[block].is_family);
-        if is_of_every_site || model.set.iter().all(|&block| block < self.look.effects) {
+        if self.has_family(library) || !self.has_rival(model) {
             return false;
         }
         let left = |set: &[usize]| field.given(set, &self.look.packed).square_left() - self.look.within.0;

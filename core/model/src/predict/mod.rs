@@ -2,20 +2,17 @@
 //! where each touch should have landed, what stereo should have estimated, where the tip should
 //! have been seen. The difference to what was measured is the gap.
 
+mod poses;
 #[cfg(test)]
 mod tests;
 
-use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
-
-use nalgebra::UnitQuaternion;
+pub use poses::{PosePrediction, TipOutcome, TipPlace, not_predicted};
 
 use crate::frame::{Point, Robot, Tip};
 use crate::pixel::{Pixel, Raw};
 use crate::robot::{Chain, DescriptionError, JointIndex, Posture, Rig};
 use crate::session::{
-    Chain as SessionChain, LocalizationRow, LocalizationTable, PoseTable, Screen, Session, TouchTable,
-    Touchscreen,
+    Chain as SessionChain, LocalizationRow, LocalizationTable, Screen, Session, TouchTable, Touchscreen,
 };
 use crate::{Pose, ProjectError};
 
@@ -26,8 +23,10 @@ pub struct SessionPrediction {
     pub touches: Vec<TouchPrediction>,
     /// `localizations.csv`.
     pub localizations: Vec<LocalizationPrediction>,
-    /// `poses.csv`.
-    pub poses: Vec<PosePrediction>,
+    /// `poses.csv`; `None` where the robot has no frame for what was measured, as [`Self::tips`] says.
+    pub poses: Vec<Option<PosePrediction>>,
+    /// What became of the rows of each tip and marker of `poses.csv`.
+    pub tips: Vec<TipOutcome>,
 }
 
 /// Which joint angles a prediction starts from.
@@ -61,18 +60,6 @@ pub struct LocalizationPrediction {
     /// were logged, else the estimate that was logged. `None` where nothing was measured, or the
     /// rays do not meet in front of the eyes.
     pub corrected: Option<Point<Robot>>,
-}
-
-/// Where the tip should have been.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PosePrediction {
-    /// The frame that the row names, else the chain's tip, in the frame of the robot. The external frame of the
-    /// measurement need not be the same one.
-    pub tip: Point<Robot>,
-    /// How it should have been turned, same frame.
-    pub turn: UnitQuaternion<f64>,
-    /// From which angles.
-    pub angles: Angles,
 }
 
 /// Why a session cannot be predicted.
@@ -124,14 +111,6 @@ pub enum PredictError {
         /// The joint.
         joint: String,
     },
-    /// A frame that a row names cannot be predicted.
-    #[error("poses.csv, row {row}: {reason}")]
-    Frame {
-        /// Counted from 1 without the header.
-        row: usize,
-        /// Why.
-        reason: Box<PredictError>,
-    },
     /// A known place that the eyes cannot see.
     #[error(
         "localizations.csv, row {row}: the known place cannot be projected into the eyes of the model ({reason}): check the place and the head's angles"
@@ -170,7 +149,8 @@ pub fn predict_session(
         prediction.localizations = localizations(table, rig)?;
     }
     if let Some(table) = &session.poses {
-        prediction.poses = poses(table, rig, chain()?)?;
+        let setup = session.manifest.pose_setup();
+        (prediction.poses, prediction.tips) = poses::poses(table, rig, chain()?, &setup)?;
     }
     Ok(prediction)
 }
@@ -188,27 +168,6 @@ fn touches(
         let tip = robot_from_tip * Point::<Tip>::new(0.0, 0.0, 0.0);
         let screen = screen.raised(row.screen_height_m.unwrap_or(0.0));
         Ok(TouchPrediction { touch: screen.pixel_at(tip), above_glass_m: screen.height_above_m(tip), angles })
-    };
-    table.rows().enumerate().map(predict).collect()
-}
-
-/// Each row is of the frame that it names, else of the chain's tip.
-fn poses(table: &PoseTable, rig: &Rig, logged: &SessionChain) -> Result<Vec<PosePrediction>, PredictError> {
-    let of_chain = Arm::of(rig, logged)?;
-    let mut others: BTreeMap<String, Arm> = BTreeMap::new();
-    for (i, row) in table.rows().enumerate() {
-        let Some(name) = row.tip.filter(|name| *name != logged.tip) else { continue };
-        if let Entry::Vacant(place) = others.entry(name) {
-            let marker = SessionChain { tip: place.key().clone(), joints: logged.joints.clone() };
-            let of_row = |reason| PredictError::Frame { row: i + 1, reason: Box::new(reason) };
-            place.insert(Arm::of(rig, &marker).map_err(of_row)?);
-        }
-    }
-    let predict = |(i, row): (usize, crate::session::PoseRow)| {
-        let arm = row.tip.as_ref().and_then(|name| others.get(name)).unwrap_or(&of_chain);
-        let (robot_from_tip, angles) = arm.tip("poses.csv", i + 1, &row.encoder_rad, &row.commanded_rad)?;
-        let tip = robot_from_tip * Point::<Tip>::new(0.0, 0.0, 0.0);
-        Ok(PosePrediction { tip, turn: robot_from_tip.isometry.rotation, angles })
     };
     table.rows().enumerate().map(predict).collect()
 }

@@ -3,7 +3,7 @@
 
 use super::*;
 use crate::measured_data;
-use crate::session::{LocalizationRow, Manifest, PoseRow, TouchRow};
+use crate::session::{LocalizationRow, Manifest, PoseRow, PoseTable, TouchRow};
 
 fn nico() -> Rig {
     Rig::built_in("nico").expect("the rig that comes with the program is tested")
@@ -124,7 +124,7 @@ fn poses_are_where_the_kinematics_put_the_tip() {
     let mut session = empty(&rig);
     session.poses = Some(PoseTable::from_rows(arm_joints(), &[row]));
     let predicted = predict_session(&session, &rig, None).expect("predicted").poses;
-    assert!(predicted[0].tip.distance_m(&tip_at(&rig, POINTING_RAD)) < 1e-12);
+    assert!(predicted[0].expect("there").tip.distance_m(&tip_at(&rig, POINTING_RAD)) < 1e-12);
 }
 
 #[test]
@@ -140,6 +140,7 @@ fn a_pose_of_another_marker_is_where_the_kinematics_put_that_one() {
     let mut session = empty(&rig);
     session.poses = Some(PoseTable::from_rows(arm_joints(), &rows));
     let predicted = predict_session(&session, &rig, None).expect("predicted").poses;
+    let predicted: Vec<PosePrediction> = predicted.into_iter().map(|pose| pose.expect("a frame")).collect();
     let palm = rig.chain("right_palm_center").expect("a frame of the hand");
     let angles: Vec<f64> = POINTING_RAD.into_iter().rev().collect();
     let palm = palm.robot_from_tip(&angles) * Point::<Tip>::new(0.0, 0.0, 0.0);
@@ -148,9 +149,54 @@ fn a_pose_of_another_marker_is_where_the_kinematics_put_that_one() {
         assert!(of_chain.tip.distance_m(&tip_at(&rig, POINTING_RAD)) < 1e-12);
         assert!(of_chain.tip.distance_m(&palm) > 0.03, "another place");
     }
-    session.poses = Some(PoseTable::from_rows(arm_joints(), &[of(None), of(Some("toe"))]));
-    let message = predict_session(&session, &rig, None).expect_err("no such frame").to_string();
-    assert!(message.contains("toe") && message.contains("poses.csv, row 2"), "{message}");
+}
+
+#[test]
+fn a_marker_that_nobody_declared_has_no_prediction_and_the_others_have_theirs() {
+    let rig = nico();
+    let of = |tip: Option<&str>| PoseRow {
+        encoder_rad: POINTING_RAD.map(Some).into(),
+        measured: Some(Point::new(1.0, 2.0, 3.0)),
+        tip: tip.map(str::to_owned),
+        ..PoseRow::default()
+    };
+    let mut session = empty(&rig);
+    // The other hand hangs on joints that were not logged.
+    let rows = [of(None), of(Some("toe")), of(Some("toe")), of(Some("left_palm_center"))];
+    session.poses = Some(PoseTable::from_rows(arm_joints(), &rows));
+    let predicted = predict_session(&session, &rig, None).expect("predicted");
+    assert!(predicted.poses[0].expect("there").tip.distance_m(&tip_at(&rig, POINTING_RAD)) < 1e-12);
+    assert_eq!(predicted.poses[1..], [None; 3]);
+    let told: Vec<_> =
+        predicted.tips.iter().map(|one| (one.tip.as_str(), one.rows, one.place.word())).collect();
+    assert_eq!(
+        told,
+        [("right_index_tip", 1, "description"), ("toe", 2, "none"), ("left_palm_center", 1, "none")]
+    );
+    assert!(
+        predicted.tips[1].words.starts_with("not predicted: ") && predicted.tips[1].words.contains("toe")
+    );
+    assert!(predicted.tips[2].words.contains("l_"), "{}", predicted.tips[2].words);
+}
+
+#[test]
+fn a_marker_that_was_mounted_anew_is_told_from_its_frame() {
+    let rig = nico();
+    let row = |tip: Option<&str>| PoseRow {
+        encoder_rad: POINTING_RAD.map(Some).into(),
+        tip: tip.map(str::to_owned),
+        ..PoseRow::default()
+    };
+    let mut session = empty(&rig);
+    session.poses = Some(PoseTable::from_rows(arm_joints(), &[row(None), row(Some("right_palm_center"))]));
+    let chain = toml::Table::from_iter([("tip_place".to_owned(), toml::Value::from("unknown"))]);
+    session.manifest.extra.insert("chain".to_owned(), toml::Value::Table(chain));
+    let tips = predict_session(&session, &rig, None).expect("predicted").tips;
+    assert_eq!(
+        tips.iter().map(|one| &one.place).collect::<Vec<_>>(),
+        [&TipPlace::Frame, &TipPlace::Description]
+    );
+    assert!(tips[0].words.contains("mounted anew") && !tips[0].place.is_comparable(), "{}", tips[0].words);
 }
 
 #[test]
