@@ -298,6 +298,10 @@ fn resume_refusal(view: &View) -> Refusal {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
+    use plumbline_engine::view::{GapSession, GapView};
+
     use super::*;
 
     #[test]
@@ -308,5 +312,29 @@ mod tests {
         assert_eq!(why(TouchAction::Start), "nothing is planned");
         assert_eq!(why(TouchAction::AcceptScreen), "no place of the screen is proposed");
         assert_eq!(TouchAction::Plan(Preset::Quick).command(&view), None);
+    }
+
+    #[test]
+    fn a_check_has_other_targets_than_all_before_it_also_after_a_restart() {
+        let session = |name: &str| GapSession {
+            folder: name.into(),
+            name: name.to_owned(),
+            started: None,
+            touches: 20,
+            poses: 0,
+            localizations: 0,
+            problem: None,
+        };
+        let of = |sessions: &[&str], purpose| {
+            let sessions = sessions.iter().map(|name| session(name)).collect();
+            let view = View { gap: Arc::new(GapView { sessions, ..GapView::default() }), ..View::default() };
+            let area = TouchArea { u_px: [0.0, 100.0], v_px: [0.0, 100.0] };
+            other_targets(&view, PlanOptions { purpose, ..PlanOptions::check_reach(area, 20, CHECK_SEED) })
+                .seed
+        };
+        let checks = ["a_touch", "b_check", "c_corners", "d_check"];
+        let seeds = [0, 2, 4].map(|count| of(&checks[..count], Purpose::Check));
+        assert_eq!(seeds, [CHECK_SEED, CHECK_SEED + 1, CHECK_SEED + 2]);
+        assert_eq!(of(&checks, Purpose::Train), CHECK_SEED, "what trains is the same each time");
     }
 }

@@ -1,7 +1,7 @@
 //! What to do next with correction models: one button, named by what it does.
 
-use plumbline_engine::View;
 use plumbline_engine::view::StepState;
+use plumbline_engine::{Correction, View};
 use plumbline_widgets::format;
 
 use super::sentence::{Guidance, say};
@@ -52,8 +52,15 @@ fn in_use(view: &View, method: Method) -> Guidance {
             _ => guidance.then("Go to Touch", Action::Go(Screen::Touch)),
         };
     }
-    say(next_or(view, &format!("{name} is in use. Next: check it with new touches. Nothing moves yet.")))
-        .then(format!("Check {name} with new touches"), Action::Models(ModelsAction::Check))
+    // A model that is in use waits while targets go by something else.
+    let said = if view.touch.correct_with == Some(Correction::Effects) {
+        format!(
+            "{name} is in use, but targets are corrected by the named effects now (Touch, Targets corrected by). Checking {name} goes by {name}. Nothing moves yet."
+        )
+    } else {
+        next_or(view, &format!("{name} is in use. Next: check it with new touches. Nothing moves yet."))
+    };
+    say(said).then(format!("Check {name} with new touches"), Action::Models(ModelsAction::Check))
 }
 
 /// The engine's own sentence, where it has one.

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::store::KeptSession;
 use super::view::GapSession;
-use crate::ground::sessions::{Unread, folders, title_of};
+use crate::ground::sessions::{Unread, folders, is_for_training, is_of_corners, title_of};
 use crate::ground::text::sentence;
 
 /// Tables that can be compared.
@@ -111,6 +111,18 @@ pub fn at_home(session: KeptSession, sessions: &Path) -> KeptSession {
     }
     let is_copy = are_all(&now, &session.tables, TableStamp::may_be_copy_of);
     KeptSession { folder: home, tables: if is_copy { now } else { session.tables } }
+}
+
+/// What is compared once a run of touches is finished. One that checks is compared beside those that were learned
+/// from, since few touches alone tell little; corners only place the screen.
+pub fn with_finished(mut chosen: Vec<PathBuf>, session: &Path) -> Vec<PathBuf> {
+    if is_for_training(session) {
+        chosen.clear();
+    }
+    if !is_of_corners(session) && !chosen.iter().any(|other| other == session) {
+        chosen.push(session.to_owned());
+    }
+    chosen
 }
 
 fn is_same_folder(a: &Path, b: &Path) -> bool {

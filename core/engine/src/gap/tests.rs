@@ -7,6 +7,7 @@ use plumbline_model::Unattended;
 use plumbline_report::sample;
 
 use super::command::GapCommand;
+use super::sessions::with_finished;
 use super::store::{KeptFinding, KeptSession, Store};
 use super::view::GapView;
 use crate::Skipped;
@@ -103,6 +104,26 @@ fn the_newest_session_is_chosen_and_the_model_is_nominal() {
     assert_eq!(view.chosen[..], [Lab::session_in(lab.folder.path())]);
     assert_eq!(view.sessions[0].touches, 63);
     assert_eq!((view.step.clone(), view.model.name.as_str()), (StepState::NotDone, "nominal"));
+}
+
+/// What is touched to check is compared beside what was learned from, and corners are not compared at all.
+#[test]
+fn a_check_is_compared_beside_the_touches_that_were_learned_from() {
+    let folder = tempfile::tempdir().expect("temporary folder");
+    let touch = Lab::session_in(folder.path());
+    let of = |kind: &str| folder.path().join(format!("sessions/2026-05-02T10-00-00_{kind}"));
+    for session in [&touch, &of("check"), &of("corners")] {
+        made_up_session(&nico()).write(session).expect("written");
+    }
+    let lab = &mut Lab::on(folder);
+    assert_eq!(lab.view().chosen[..], [touch.clone()], "not the newest one, which only checked");
+    let chosen = vec![touch.clone()];
+    assert_eq!(with_finished(chosen.clone(), &of("corners")), chosen);
+    let both = with_finished(chosen.clone(), &of("check"));
+    assert_eq!(both, [touch.clone(), of("check")]);
+    assert_eq!(with_finished(both.clone(), &of("check")), both, "not twice");
+    assert_eq!(with_finished(both, &touch), chosen, "what is learned from begins anew");
+    assert_eq!(with_finished(vec![], &of("check")), [of("check")]);
 }
 
 #[test]

@@ -10,13 +10,14 @@ use plumbline_report::ReportContext;
 
 use super::command::{GapCommand, GapModel};
 use super::model;
+use super::sessions::with_finished;
 use super::store::{KeptSession, Named, Store};
 use super::view::{FindingEntry, GapModelView, GapSession, ShownFinding};
 use super::work::{Context, GapResult, GapWork, Restored};
 use crate::gap::view::GapView;
 use crate::ground::jobs::JobId;
 use crate::ground::notice::NoticeLevel;
-use crate::ground::sessions::{is_for_training, is_of_corners};
+use crate::ground::sessions::is_for_training;
 use crate::ground::{Moment, Nothing, Workflow};
 
 /// What the workflow can see of the rest.
@@ -226,15 +227,9 @@ impl GapWorkflow {
         context.start(GapWork::Report { finding, context: Box::new(page), file, pdf });
     }
 
-    /// A run of touches is finished: it is compared next, and is in the list. One that checks is compared beside
-    /// those that were learned from: few touches alone tell little.
+    /// A run of touches is finished: it is compared next, and is in the list.
     pub fn touched(&mut self, session: &Path, context: &mut Context<'_>) {
-        if is_for_training(session) || self.chosen.is_empty() {
-            self.chosen.clear();
-        }
-        if !is_of_corners(session) && !self.chosen.iter().any(|chosen| chosen == session) {
-            self.chosen.push(session.to_owned());
-        }
+        self.chosen = with_finished(std::mem::take(&mut self.chosen), session);
         self.list(context);
     }
 

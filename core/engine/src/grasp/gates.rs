@@ -235,6 +235,22 @@ mod tests {
     }
 
     #[test]
+    fn nothing_is_grasped_while_a_run_of_touches_moves_the_arm() {
+        let connected = |is_touching| {
+            let still = around(0.0, 31.0);
+            let connection = Connection::Connected { to: "twin".to_owned(), twin: true };
+            let robot = Arc::new(RobotView { connection, ..(*still.robot).clone() });
+            GraspAround { robot, is_touching, ..still }
+        };
+        let run = |around: &GraspAround| {
+            let gates = gates(around, HandChoice::Auto, Method::M5);
+            gates.into_iter().find(|gate| gate.name == "Run").map(|gate| gate.state)
+        };
+        assert_eq!(run(&connected(true)), Some(GateState::Shut));
+        assert_eq!(run(&connected(false)), None);
+    }
+
+    #[test]
     fn where_a_joint_is_not_known_power_is_looked_at_only_where_its_servo_is_silent() {
         let unheard = |late: bool| {
             let mut around = around(0.0, 31.0);
