@@ -52,10 +52,10 @@ fn hidden_effects_of_unknown_arms_are_found_and_nothing_else() {
 }
 
 /// Cases of what the library lacks, by sort and plan; every one is told, and none gets a confident name.
-fn told(sorts: &[(Kind, Plan)], is_repeated: bool, number: usize) {
+fn told(sorts: &[(Kind, Plan)], is_repeated: bool, first_seed: u64) {
     let of = |(kind, plan): &(Kind, Plan)| Wish::of(Family::OffLibrary, *plan, 5.0, Some(*kind));
     let mut wishes: Vec<Wish<Kind>> = sorts.iter().map(of).collect();
-    Wish::number(&mut wishes, number);
+    Wish::number(&mut wishes, first_seed);
     wishes.iter_mut().for_each(|wish| wish.repeated = is_repeated);
     let score = scored(wishes.len(), |number| arms::make(&wishes[number]));
     let nameless = all(score.nameless.values().copied());
