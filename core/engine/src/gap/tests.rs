@@ -111,11 +111,12 @@ fn the_newest_session_is_chosen_and_the_model_is_nominal() {
 fn a_check_is_compared_beside_the_touches_that_were_learned_from() {
     let folder = tempfile::tempdir().expect("temporary folder");
     let touch = Lab::session_in(folder.path());
-    let of = |kind: &str| folder.path().join(format!("sessions/2026-05-02T10-00-00_{kind}"));
+    let at = folder.path().to_owned();
+    let of = |kind: &str| at.join(format!("sessions/2026-05-02T10-00-00_{kind}"));
     for session in [&touch, &of("check"), &of("corners")] {
         made_up_session(&nico()).write(session).expect("written");
     }
-    let lab = &mut Lab::on(folder);
+    let mut lab = Lab::on(folder);
     assert_eq!(lab.view().chosen[..], [touch.clone()], "not the newest one, which only checked");
     let chosen = vec![touch.clone()];
     assert_eq!(with_finished(chosen.clone(), &of("corners")), chosen);
