@@ -43,12 +43,12 @@ fn hidden_effects_of_unknown_arms_are_found_and_nothing_else() {
     let singles = all(score.singles_visible.values().map(|naming| naming.class));
     assert!(singles.of == 6 && singles.hits >= 5, "single effects: {singles:?}");
     let pairs = all(score.several.values().map(|naming| naming.class));
-    assert!(value(&pairs) >= 0.5, "pairs: {pairs:?}");
+    assert!(value(&pairs) >= 0.75, "pairs: {pairs:?}");
     let nameless = all(score.nameless.values().copied());
-    assert!(value(&nameless) >= 0.5, "not in the library: {nameless:?}");
+    assert!(nameless.of == 2 && nameless.hits == 2, "not in the library: {nameless:?}");
     assert_eq!(score.nameless_named.hits, 0, "a confident name of what is in no library");
-    assert!(value(&score.wrong_confident) <= 0.15, "confident and wrong: {:?}", score.wrong_confident);
-    assert!(value(&score.coverage) >= 0.8, "intervals: {:?}", score.coverage);
+    assert!(value(&score.wrong_confident) <= 0.1, "confident and wrong: {:?}", score.wrong_confident);
+    assert!(value(&score.coverage) >= 0.9, "intervals: {:?}", score.coverage);
 }
 
 /// Cases of what the library lacks, by sort and plan; every one is told, and none gets a confident name.
