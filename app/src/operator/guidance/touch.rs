@@ -5,12 +5,13 @@ use plumbline_engine::view::{
     Figure, PlanView, StepState, Subject, TouchCounts, TouchOutcome, TouchPhase, TouchView,
 };
 use plumbline_model::touch_plan::{Finger, Purpose};
+use plumbline_model::touchscreen::ScreenPlacement;
 use plumbline_widgets::format;
 
 use super::robot;
 use super::sentence::{Guidance, say};
-use crate::operator::words::capitalized;
 use crate::operator::words::proof::{Proof, Worth};
+use crate::operator::words::{capitalized, sentence};
 use crate::operator::{Action, Preset, Screen, TouchAction, is_under_way, needs_window};
 
 pub(super) fn touch(view: &View) -> Guidance {
@@ -138,8 +139,10 @@ pub fn done_of(counts: TouchCounts) -> usize {
 fn finished(view: &View) -> Guidance {
     let touch = &view.touch;
     let purpose = touch.plan.as_ref().map(|plan| plan.options.purpose);
-    if is_screen_to_be_decided(touch, purpose) {
-        return say("The screen was measured. Look at how far it moved, then use it.")
+    if is_screen_to_be_decided(touch, purpose)
+        && let Some(place) = &touch.placement_proposal
+    {
+        return say(measured(place))
             .then("Use this place of the screen", Action::Touch(TouchAction::AcceptScreen));
     }
     let touched = format::count(touch.counts.touched, "touch");
@@ -162,6 +165,17 @@ fn finished(view: &View) -> Guidance {
         Some(Purpose::Train) | None => say(format!("{touched} are on disk. Next: train models on them."))
             .then("Train models", Action::Go(Screen::Models)),
     }
+}
+
+/// Where the screen was found to lie, and what makes that doubtful, before it is used.
+pub fn measured(place: &ScreenPlacement) -> String {
+    let moved_m = place.moved_m.iter().map(|m| m * m).sum::<f64>().sqrt();
+    let touches = format::count(place.touches, "touch");
+    let [moved, left] = [moved_m, place.rms_m].map(format::mm);
+    let doubt = place.remarks.first().map_or_else(String::new, |remark| format!(" {}", sentence(remark)));
+    format!(
+        "The screen lies {moved} from where it was built to lie; {left} are left over at {touches}.{doubt} Nothing moves."
+    )
 }
 
 /// Whether a measured place of the screen is what the operator waits for. Touches that were made for something

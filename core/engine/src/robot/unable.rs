@@ -198,7 +198,7 @@ pub enum Interrupted {
     #[error("STOP is pressed. Release it, then go on.")]
     StopIsPressed,
     /// The operator said so.
-    #[error("STOP was pressed. Release it first.")]
+    #[error("STOP was pressed.")]
     Stopped,
     /// The arm goes elsewhere.
     #[error("Something else moves the arm. Wait until it stands, then go on.")]

@@ -5,15 +5,15 @@ use plumbline_engine::view::TouchPhase;
 use plumbline_model::touch_plan::Purpose;
 
 use super::super::robot;
-use super::super::touch::{done_of, touch, wanted, what_moves};
+use super::super::touch::{done_of, measured, touch, wanted, what_moves};
 use super::Said;
 use crate::operator::{Action, CommissionAction, TouchAction, needs_window};
 
 pub(super) fn placing(view: &View) -> Said {
     let touch = &view.touch;
-    if touch.placement_proposal.is_some() && !is_moving(view) {
+    if let Some(place) = touch.placement_proposal.as_ref().filter(|_| !is_moving(view)) {
         return Said::press(
-            "The screen was measured. Look at how far it moved; accepting puts its place in use.",
+            measured(place),
             "Use this place of the screen",
             vec![Action::Touch(TouchAction::AcceptScreen)],
         );
