@@ -28,8 +28,6 @@ fn contents(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
         choose_tip(ui, &view.robot, &mut |link| cx.outbox.send(RobotCommand::ChooseTip { link }));
     });
-    ui.label(theme::small(ui, format!("Moved by the robot {}.", view.robot.model)));
-    gamepad(ui, cx.state.robot.gamepad.as_ref());
     let why = cannot_jog(&view.robot);
     let tip = tip_title(&view.robot).to_lowercase();
     let pad = cx.state.robot.gamepad.clone().filter(|pad| pad.enabled && why.is_none());
@@ -37,6 +35,9 @@ fn contents(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         .why_not(why.as_deref())
         .enabled_elsewhere(pad.is_some())
         .show(ui, &mut cx.state.robot.jog_speed);
+    // Below: in a small window the pad itself has to be in sight.
+    ui.label(theme::small(ui, format!("Moved by the robot {}.", view.robot.model)));
+    gamepad(ui, cx.state.robot.gamepad.as_ref());
     let by_hand = shown.intent.map(|intent| JogRates {
         velocity_m_s: intent.velocity_m_s.into(),
         yaw_rad_s: intent.yaw_rate_rad_s,
