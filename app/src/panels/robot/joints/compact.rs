@@ -9,8 +9,10 @@ use super::proposing::{preview_angle, propose};
 use crate::panels::PanelContext;
 use crate::panels::robot::parts::cannot_show;
 
-const TITLE: f32 = 148.0;
+/// A name is shortened to no less than this, and never needs more, points.
+const TITLE: [f32; 2] = [112.0, 148.0];
 const FIGURES: f32 = 104.0;
+const LEAST_SLIDER: f32 = 60.0;
 
 /// One line: title, slider, angle, temperature.
 pub(super) fn row(ui: &mut Ui, cx: &mut PanelContext<'_>, joint: &JointView) {
@@ -23,14 +25,16 @@ pub(super) fn row(ui: &mut Ui, cx: &mut PanelContext<'_>, joint: &JointView) {
         let name = short_title(&joint.title);
         // With something at its right end, the name stands at its left one, below the others.
         let button = egui::Button::selectable(chosen, name).right_text("").truncate();
-        let label = ui.add_sized([TITLE, 22.0], button);
+        let beside = FIGURES + LEAST_SLIDER + 2.0 * ui.spacing().item_spacing.x;
+        let title = (ui.available_width() - beside).clamp(TITLE[0], TITLE[1]);
+        let label = ui.add_sized([title, 22.0], button);
         label.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, chosen, &joint.title));
         if label.clicked() {
             cx.state.robot.chosen_joint = Some(joint.joint);
         }
         let why = cannot_show(robot);
         let mut degrees = shown_deg.unwrap_or_default();
-        ui.spacing_mut().slider_width = (ui.available_width() - FIGURES).max(60.0);
+        ui.spacing_mut().slider_width = (ui.available_width() - FIGURES).max(LEAST_SLIDER);
         let range = limits.lower_rad.to_degrees()..=limits.upper_rad.to_degrees();
         let slider = egui::Slider::new(&mut degrees, range).show_value(false);
         let slider = ui.add_enabled(why.is_none() && shown_deg.is_some(), slider);
