@@ -78,17 +78,18 @@ fn a_full_disk_is_told_and_takes_nothing() {
 
 #[test]
 fn touches_that_gave_the_screen_its_place_are_not_outdated_by_it() {
-    let sessions = tempfile::tempdir().expect("a folder");
-    let session = sessions.path().join("first");
-    std::fs::create_dir(&session).expect("writable");
-    store::write(&session, &[], &Progress { finished: true, ..progress(3) }).expect("written");
-    let table = session.join(names::TOUCHES);
-    let of_table = |file: &Path| std::fs::metadata(file).and_then(|about| about.modified()).expect("there");
-    let before = of_table(&table);
-    let gave = |sessions: &Path| store::list(sessions).trained.expect("a finished run").gave_placement;
-    assert_eq!(gave(sessions.path()), None);
-    store::keep_placement(&session, Timestamp::UNIX_EPOCH).expect("kept");
-    assert_eq!(gave(sessions.path()), Some(Timestamp::UNIX_EPOCH));
-    assert_eq!(of_table(&table), before, "findings in these touches are of the same tables");
-    assert!(store::keep_placement(sessions.path(), Timestamp::UNIX_EPOCH).is_err(), "there is no run");
+    let session = tempfile::tempdir().expect("a folder");
+    store::write(session.path(), &[], &progress(3)).expect("written");
+    let table = session.path().join(names::TOUCHES);
+    let of_table = || std::fs::metadata(&table).and_then(|about| about.modified()).expect("there");
+    let kept = || {
+        let text = std::fs::read_to_string(session.path().join(store::PROGRESS)).expect("there");
+        serde_json::from_str::<Progress>(&text).expect("whole")
+    };
+    let before = of_table();
+    store::keep_placement(session.path(), Timestamp::UNIX_EPOCH).expect("kept");
+    assert_eq!(kept(), Progress { gave_placement: Some(Timestamp::UNIX_EPOCH), ..progress(3) });
+    assert_eq!(of_table(), before, "findings in these touches are of the same tables");
+    let empty = tempfile::tempdir().expect("a folder");
+    assert!(store::keep_placement(empty.path(), Timestamp::UNIX_EPOCH).is_err(), "there is no run");
 }
