@@ -22,7 +22,8 @@ use plumbline_blind::design::Planner;
 use plumbline_blind::hide::{Kinds, Wish};
 use plumbline_blind::physics::Generator;
 use plumbline_blind::recipe::Family;
-use plumbline_blind::score::{Score, Verdict};
+use plumbline_blind::score::Score;
+use plumbline_blind::verdict::Verdict;
 use plumbline_blind::{BlindError, arms, eyes, mix, names, parallel, table, words};
 use plumbline_gap::Options;
 use serde_json::Value;
@@ -238,7 +239,7 @@ fn sizes(answer: &Answer, verdict: &Verdict) -> Vec<String> {
     let mut outside = vec![];
     for hidden in &answer.hidden {
         let same =
-            |found: &&plumbline_blind::score::Found| found.id == hidden.id && found.site == hidden.site;
+            |found: &&plumbline_blind::verdict::Found| found.id == hidden.id && found.site == hidden.site;
         let Some(found) = verdict.effects.iter().find(same) else { continue };
         for (name, truth) in &hidden.parameters {
             let number = |end: &str| found.parameters.get(name)?.get(end)?.as_f64();

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use plumbline_blind::score::{Found, Verdict};
+use plumbline_blind::verdict::{Found, Verdict};
 use plumbline_effects::Measurements;
 use plumbline_gap::finding::Finding;
 use plumbline_gap::{Options, find};

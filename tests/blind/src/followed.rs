@@ -3,7 +3,8 @@
 use std::fmt::Write as _;
 
 use crate::answer::Answer;
-use crate::score::{Found, Share, VISIBLE, Verdict};
+use crate::score::{Share, VISIBLE};
+use crate::verdict::{Found, Verdict};
 
 /// Edges of the bins of promised probabilities.
 const EDGES: [f64; 4] = [0.5, 0.7, 0.9, 0.97];

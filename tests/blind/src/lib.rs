@@ -31,6 +31,7 @@ pub mod score;
 pub mod secret;
 pub mod stage;
 pub mod table;
+pub mod verdict;
 pub mod words;
 pub mod world;
 

@@ -1,48 +1,11 @@
-//! Which names that were given are right, and a line of JSON about each.
+//! A line of JSON about each name that was given.
 
 use serde::Serialize;
 use serde_json::Value;
 
 use crate::answer::{Answer, Hidden, Plan, Source};
 use crate::recipe::Family;
-use crate::score::{Found, Verdict, plain};
-
-/// How right a name is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct Rightness {
-    /// The name is of what is there.
-    pub is_exact: bool,
-    /// One of its class is.
-    pub is_among: bool,
-}
-
-/// How right each of the effects of a verdict is, in their order.
-pub fn rightness(answer: &Answer, verdict: &Verdict) -> Vec<Rightness> {
-    let there: Vec<String> = answer
-        .hidden
-        .iter()
-        .map(Hidden::named)
-        .chain(answer.dirt.iter().chain(&answer.also).cloned())
-        .map(|n| plain(&n))
-        .collect();
-    // A name in the place of what is hidden is not right because a trace of it is there as well.
-    let own = |found: &Found| answer.hidden.iter().any(|hidden| plain(&hidden.named()) == found.name());
-    let is_trace = |found: &Found| answer.dirt.iter().any(|dirt| plain(dirt) == found.name());
-    let stands_for = |found: &Found| {
-        let unnamed = answer.hidden.iter().map(|hidden| plain(&hidden.named()));
-        let mut unnamed =
-            unnamed.filter(|hidden| verdict.effects.iter().all(|other| other.name() != *hidden));
-        unnamed.any(|hidden| found.may_be(&hidden))
-    };
-    let of = |found: &Found| {
-        let is_in_its_place = !own(found) && is_trace(found) && stands_for(found);
-        Rightness {
-            is_exact: there.contains(&found.name()) && !is_in_its_place,
-            is_among: there.iter().any(|name| found.may_be(name)),
-        }
-    };
-    verdict.effects.iter().map(of).collect()
-}
+use crate::verdict::{Found, Rightness, Verdict, rightness};
 
 /// A name with all that may go with its being right or wrong.
 #[derive(Clone, Debug, Serialize)]

@@ -6,75 +6,13 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::answer::{Answer, Hidden};
-use crate::names::{Rightness, rightness};
 use crate::recipe::Family;
+use crate::verdict::{Found, Rightness, Verdict, plain, rightness};
 
 /// A name that is stated with more than this is confident.
 const CONFIDENT: f64 = 0.8;
 /// Bins of stated probabilities.
 const BINS: usize = 10;
-
-/// What `plumbline gap --json` prints, as far as it is judged.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Verdict {
-    /// `no-gap`, `named`, `class` or `not-in-library`.
-    pub verdict: String,
-    /// Effects that were found.
-    #[serde(default)]
-    pub effects: Vec<Found>,
-    /// The gap on rows that were not used.
-    #[serde(default)]
-    pub held_out: BTreeMap<String, Value>,
-    /// Time that it took, s.
-    #[serde(default)]
-    pub seconds: Option<f64>,
-}
-
-/// An effect that was found.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Found {
-    /// Its name.
-    pub id: String,
-    /// Where.
-    pub site: String,
-    /// Stated probability of the name.
-    pub probability: f64,
-    /// Parameters: numbers with `low` and `high`, or text.
-    #[serde(default)]
-    pub parameters: BTreeMap<String, Value>,
-    /// What it does to the rows, in units of their noise, where it says so.
-    #[serde(default)]
-    pub size_sigmas: Option<f64>,
-    /// Every `id@site` that it could be, too.
-    #[serde(default)]
-    pub class: Vec<String>,
-}
-
-impl Found {
-    pub(crate) fn name(&self) -> String {
-        plain(&format!("{}@{}", self.id, self.site))
-    }
-
-    pub(crate) fn may_be(&self, name: &str) -> bool {
-        self.name() == name || self.class.iter().any(|member| plain(member) == name)
-    }
-}
-
-impl Verdict {
-    /// Whether it gives names.
-    pub fn names(&self) -> bool {
-        matches!(self.verdict.as_str(), "named" | "class")
-    }
-
-    fn closure(&self) -> Option<f64> {
-        self.held_out.get("closure")?.as_f64()
-    }
-}
-
-/// An effect without a site is written with or without the sign.
-pub(crate) fn plain(name: &str) -> String {
-    name.trim_end_matches('@').to_owned()
-}
 
 /// So many of so many.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
