@@ -3,7 +3,7 @@
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::answer::{Answer, Hidden, Plan, Source};
+use crate::answer::{Answer, Plan, Source};
 use crate::recipe::Family;
 use crate::verdict::{Found, Rightness, Verdict, rightness};
 
