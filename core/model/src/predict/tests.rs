@@ -127,16 +127,21 @@ fn poses_are_where_the_kinematics_put_the_tip() {
     assert!(predicted[0].expect("there").tip.distance_m(&tip_at(&rig, POINTING_RAD)) < 1e-12);
 }
 
-#[test]
-fn a_pose_of_another_marker_is_where_the_kinematics_put_that_one() {
-    let rig = nico();
-    let of = |tip: Option<&str>| PoseRow {
+/// The pointing arm, measured at this tip.
+fn pointing_at(tip: Option<&str>) -> PoseRow {
+    PoseRow {
         encoder_rad: POINTING_RAD.map(Some).into(),
         measured: Some(Point::new(1.0, 2.0, 3.0)),
         tip: tip.map(str::to_owned),
         ..PoseRow::default()
-    };
-    let rows = [of(None), of(Some("right_palm_center")), of(Some("right_index_tip"))];
+    }
+}
+
+#[test]
+fn a_pose_of_another_marker_is_where_the_kinematics_put_that_one() {
+    let rig = nico();
+    let rows =
+        [pointing_at(None), pointing_at(Some("right_palm_center")), pointing_at(Some("right_index_tip"))];
     let mut session = empty(&rig);
     session.poses = Some(PoseTable::from_rows(arm_joints(), &rows));
     let predicted = predict_session(&session, &rig, None).expect("predicted").poses;
@@ -154,15 +159,14 @@ fn a_pose_of_another_marker_is_where_the_kinematics_put_that_one() {
 #[test]
 fn a_marker_that_nobody_declared_has_no_prediction_and_the_others_have_theirs() {
     let rig = nico();
-    let of = |tip: Option<&str>| PoseRow {
-        encoder_rad: POINTING_RAD.map(Some).into(),
-        measured: Some(Point::new(1.0, 2.0, 3.0)),
-        tip: tip.map(str::to_owned),
-        ..PoseRow::default()
-    };
     let mut session = empty(&rig);
     // The other hand hangs on joints that were not logged.
-    let rows = [of(None), of(Some("toe")), of(Some("toe")), of(Some("left_palm_center"))];
+    let rows = [
+        pointing_at(None),
+        pointing_at(Some("toe")),
+        pointing_at(Some("toe")),
+        pointing_at(Some("left_palm_center")),
+    ];
     session.poses = Some(PoseTable::from_rows(arm_joints(), &rows));
     let predicted = predict_session(&session, &rig, None).expect("predicted");
     assert!(predicted.poses[0].expect("there").tip.distance_m(&tip_at(&rig, POINTING_RAD)) < 1e-12);
