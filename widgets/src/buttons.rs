@@ -70,6 +70,8 @@ pub enum ArmState {
     Held,
     /// In motion.
     Moving,
+    /// The head turns; the arm is held.
+    HeadMoving,
     /// Torque off: can be moved by hand, and falls.
     Free,
     /// Stopped and held; nothing moves before the stop is released.
@@ -88,6 +90,7 @@ impl ArmState {
         match self {
             Self::Held => "arm held",
             Self::Moving => "arm moving",
+            Self::HeadMoving => "head moving",
             Self::Free => "arm free",
             Self::Stopped => "stopped",
             Self::Unknown => "arm not known",

@@ -14,11 +14,14 @@ use crate::format;
 use crate::glyph::{self, Glyph};
 use crate::theme::{self, space};
 
-const CELL: egui::Vec2 = vec2(72.0, 40.0);
+const CELL: egui::Vec2 = vec2(62.0, 40.0);
 const GAP: f32 = space::XS;
 const ENABLE_HEIGHT: f32 = 46.0;
 const PAD_WIDTH: f32 = 5.0 * CELL.x + 4.0 * GAP + 2.0 * space::S;
-const NARROW_WIDTH: f32 = 3.0 * CELL.x + 2.0 * GAP;
+/// Where height and turn stand below the plane there is little height, too.
+const NARROW_CELL: egui::Vec2 = vec2(62.0, 34.0);
+const NARROW_ENABLE_HEIGHT: f32 = 40.0;
+const NARROW_WIDTH: f32 = 3.0 * NARROW_CELL.x + 2.0 * GAP;
 
 /// A motion that is asked for right now, in the robot's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,13 +91,14 @@ const fn direction(
 impl Direction {
     /// Height and turn stand a little apart from the plane: beside it, or below it where that is too wide.
     fn rect(&self, pad: Pos2, wide: bool) -> Rect {
-        let cell = |column: f32, row: f32| vec2(column * (CELL.x + GAP), row * (CELL.y + GAP));
+        let size = if wide { CELL } else { NARROW_CELL };
+        let cell = |column: f32, row: f32| vec2(column * (size.x + GAP), row * (size.y + GAP));
         let at = match (self.column >= 3.0, wide) {
             (false, _) => cell(self.column, self.row),
             (true, true) => cell(self.column, self.row) + vec2((self.column - 2.0) * space::S, 0.0),
             (true, false) => cell(self.column - 3.0, self.row + 2.5) + vec2(0.0, space::S),
         };
-        Rect::from_min_size(pad + at, CELL)
+        Rect::from_min_size(pad + at, size)
     }
 }
 
@@ -150,14 +154,17 @@ impl<'a> JogPad<'a> {
     /// nothing can be moved.
     pub fn show(self, ui: &mut Ui, speed: &mut JogSpeed) -> JogPadResponse {
         let start = ui.cursor().min;
-        ui.label(theme::strong(ui, format!("Moves the {}", self.what)));
-        ui.label(theme::small(ui, "In the robot's frame: forward is away from the robot, left is its left."));
-        ui.add_space(space::XS);
-        speeds(ui, speed);
-        ui.add_space(space::XS);
         let wide = ui.available_width() >= PAD_WIDTH;
-        let (width, rows) = if wide { (PAD_WIDTH, 3.0) } else { (NARROW_WIDTH, 5.0) };
-        let height = rows * CELL.y + (rows - 1.0) * GAP + 2.0 * space::S + ENABLE_HEIGHT;
+        let speed_mm_s = format::fixed(speed.linear_m_s() * 1e3, 0);
+        ui.label(theme::strong(ui, format!("Moves the {}, {speed_mm_s} mm/s", self.what)));
+        ui.add_space(space::XS);
+        speeds(ui, speed, wide);
+        ui.add_space(space::XS);
+        let (width, rows, cell, enable_height) = match wide {
+            true => (PAD_WIDTH, 3.0, CELL, ENABLE_HEIGHT),
+            false => (NARROW_WIDTH, 5.0, NARROW_CELL, NARROW_ENABLE_HEIGHT),
+        };
+        let height = rows * cell.y + (rows - 1.0) * GAP + 2.0 * space::S + enable_height;
         let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
         let label = format!("Jog the {}", self.what);
         response.widget_info(|| WidgetInfo::labeled(egui::Role::Group, ui.is_enabled(), &label));
@@ -169,7 +176,7 @@ impl<'a> JogPad<'a> {
         let buttons = DIRECTIONS
             .each_ref()
             .map(|direction| interact(ui, direction.rect(rect.min, wide), base, direction, usable));
-        let enable_rect = Rect::from_min_max(pos2(rect.left(), rect.bottom() - ENABLE_HEIGHT), rect.max);
+        let enable_rect = Rect::from_min_max(pos2(rect.left(), rect.bottom() - enable_height), rect.max);
         let enable = ui.interact(enable_rect, base.with("enable"), sense(usable));
         let enable_label = self.why_not.unwrap_or("Hold to move");
         enable.widget_info(|| WidgetInfo::labeled(egui::Role::Button, usable, enable_label));
@@ -201,6 +208,9 @@ impl<'a> JogPad<'a> {
             // What is released must be seen at once, also when nothing else happens.
             ui.ctx().request_repaint();
         }
+        // Below: in a small window the pad itself has to be in sight.
+        ui.add_space(space::XS);
+        ui.label(theme::small(ui, "In the robot's frame: forward is away from the robot, left is its left."));
         JogPadResponse { response, intent, enabled }
     }
 
@@ -232,6 +242,9 @@ impl<'a> JogPad<'a> {
         let (title, hint) = match (enabled, intent) {
             (true, Some(intent)) => ("Moving".to_owned(), describe(intent)),
             (true, None) => ("Enabled".to_owned(), "press a direction".to_owned()),
+            (false, _) if rect.width() < PAD_WIDTH => {
+                ("Hold to move".to_owned(), "or Shift over this pad".to_owned())
+            }
             (false, _) => (
                 "Hold to move".to_owned(),
                 "hold Shift over this pad, or this button; arrows, page up/down, Q, E".to_owned(),
@@ -244,17 +257,15 @@ impl<'a> JogPad<'a> {
     }
 }
 
-fn speeds(ui: &mut Ui, speed: &mut JogSpeed) {
-    choice(
-        ui,
-        "Jog speed",
-        speed,
-        &[
-            (JogSpeed::Fine, "Fine 5 mm/s"),
-            (JogSpeed::Normal, "Normal 20 mm/s"),
-            (JogSpeed::Fast, "Fast 60 mm/s"),
-        ],
-    );
+fn speeds(ui: &mut Ui, speed: &mut JogSpeed, wide: bool) {
+    let words = match wide {
+        true => ["Fine 5 mm/s", "Normal 20 mm/s", "Fast 60 mm/s"],
+        // How fast the chosen one is stands above.
+        false => ["Fine", "Normal", "Fast"],
+    };
+    let speeds = [JogSpeed::Fine, JogSpeed::Normal, JogSpeed::Fast];
+    let options: Vec<(JogSpeed, &str)> = speeds.into_iter().zip(words).collect();
+    choice(ui, "Jog speed", speed, &options);
 }
 
 fn sense(usable: bool) -> Sense {

@@ -33,7 +33,7 @@ impl Severity {
         Duration::from_secs(match self {
             Self::Info | Self::Done => 5,
             Self::Warning => 12,
-            Self::Failed => 60,
+            Self::Failed => 25,
         })
     }
 

@@ -94,6 +94,10 @@ impl PlumblineWindow {
                 self.ask = None;
                 self.hold_and_close(ctx);
             }
+            Asked::Close => {
+                self.ask = None;
+                self.close(ctx);
+            }
             Asked::CommandKeepOpen(command) => outbox.send(command),
             Asked::Answer(answer) => {
                 self.ask = None;

@@ -152,7 +152,7 @@ impl PlumblineWindow {
             Action::About => self.ask = Some(Ask::About(About::new(ctx, &self.renderer))),
             Action::ToggleInspector => self.settings.inspector_open = !self.settings.inspector_open,
             Action::ToggleLog => self.settings.log_open = !self.settings.log_open,
-            Action::ToggleNotices => self.notices.toggle_history(),
+            Action::ToggleNotices => self.notices.toggle_history(ctx),
             Action::ToggleTheme => self.toggle_theme(ctx),
             Action::ResetArrangement => self.reset_arrangement(self.settings.screen),
             Action::ResetAllArrangements => Screen::ALL.into_iter().for_each(|s| self.reset_arrangement(s)),

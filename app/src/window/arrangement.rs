@@ -156,10 +156,10 @@ fn robot(tiles: &mut Tiles<Pane>) -> TileId {
     let jog = tabs(tiles, &[Pane::Jog, Pane::Twin]);
     let joints = tabs(tiles, &[Pane::Joints]);
     let poses = tabs(tiles, &[Pane::Poses]);
-    // Pad and rows of joints need their width on the smallest window too.
-    let top = row(tiles, &[(scene, 1.0), (jog, 1.0)]);
-    let bottom = row(tiles, &[(joints, 2.4), (poses, 1.0)]);
-    column(tiles, &[(top, 1.12), (bottom, 1.0)])
+    // The pad needs its height on the smallest window too: rows of joints scroll, and so do postures.
+    let left = column(tiles, &[(scene, 1.0), (joints, 1.1)]);
+    let right = column(tiles, &[(jog, 1.8), (poses, 1.0)]);
+    row(tiles, &[(left, 1.25), (right, 1.0)])
 }
 
 fn scores(tiles: &mut Tiles<Pane>) -> TileId {

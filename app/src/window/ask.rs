@@ -15,6 +15,7 @@ use super::connect::{self, ConnectChoice};
 use super::dialogs::{Answer, Question};
 use super::lerobot::LerobotAsk;
 use super::sheet::{Asked, buttons, sheet, title};
+use super::unaccepted::sheet_of_unaccepted;
 
 /// An open sheet.
 #[derive(Debug)]
@@ -44,6 +45,8 @@ pub enum Ask {
     Connect(ConnectChoice),
     /// Whether the window closes although something moves.
     CloseWhileMoving,
+    /// Whether it closes although what was solved was not accepted.
+    CloseUnaccepted,
     /// Whether all joints may go limp.
     LetGo,
     /// Whether servos may be told for good to answer sooner.
@@ -93,6 +96,7 @@ impl Ask {
             Self::About(about) => about.show(ui),
             Self::Connect(chosen) => connect::show(ui, view, chosen),
             Self::CloseWhileMoving => close_while_moving(ui),
+            Self::CloseUnaccepted => sheet_of_unaccepted(ui, view),
             Self::LetGo => let_go(ui),
             Self::ShortenAnswers => shorten_answers(ui, view),
             Self::NewLabelSet { folder, classes } => new_label_set(ui, folder, classes),

@@ -7,8 +7,8 @@ use plumbline_engine::view::{MotionState, TouchPhase, TrialsPhase};
 use plumbline_model::duration;
 
 use super::{
-    Ask, PlumblineWindow, apply, commission, drop, frame_time, frame_times_overlay, health, inspector,
-    jogging, rail, status_line, tiles, transport, truth_band,
+    PlumblineWindow, apply, commission, drop, frame_time, frame_times_overlay, health, inspector, jogging,
+    rail, status_line, tiles, transport, truth_band,
 };
 use crate::operator::{Outbox, Screen, StopKeys, shortcuts};
 
@@ -24,7 +24,7 @@ impl PlumblineWindow {
         if shortcuts::stop_asked(ctx, self.stop_keys(ctx)) {
             self.backend.stop();
         }
-        self.hold_before_closing(ctx);
+        self.ask_before_closing(ctx);
         self.backend.heartbeat();
         self.view = self.backend.view();
         if let Some(answer) = self.dialogs.poll() {
@@ -52,7 +52,7 @@ impl PlumblineWindow {
     }
 
     /// Whether something moves, or goes on moving by itself.
-    fn moves(&self) -> bool {
+    pub(super) fn moves(&self) -> bool {
         let view = &self.view;
         // The evaluation on a grid is none of them: only things are laid, by a person or in the twin.
         let runs = matches!(view.touch.phase, TouchPhase::Waiting { .. } | TouchPhase::Running { .. })
@@ -73,22 +73,6 @@ impl PlumblineWindow {
             || egui::Popup::is_any_open(ctx);
         let moves = self.moves();
         StopKeys { escape: moves || !lies_on_top, moves }
-    }
-
-    /// A window that closes would leave what moves to itself.
-    fn hold_before_closing(&mut self, ctx: &egui::Context) {
-        if self.closes || !self.moves() || !ctx.input(|input| input.viewport().close_requested()) {
-            return;
-        }
-        ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
-        self.ask = Some(Ask::CloseWhileMoving);
-    }
-
-    /// Holds what moves, and closes.
-    pub(super) fn hold_and_close(&mut self, ctx: &egui::Context) {
-        self.closes = true;
-        self.stop();
-        ctx.send_viewport_cmd(egui::ViewportCommand::Close);
     }
 
     /// Only the robot's screen is jogged with one; its STOP counts everywhere.

@@ -42,7 +42,7 @@ pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
         ui.spacing_mut().item_spacing.y = 0.0;
         let first_row = egui::vec2(ui.available_width(), STOP_SIZE.y);
         ui.allocate_ui_with_layout(first_row, Layout::right_to_left(Align::Center), |ui| {
-            let stop = stop_button(ui, robot_lamps::arm_state(&window.view.robot));
+            let stop = stop_button(ui, robot_lamps::arm_state(&window.view));
             if stop_pressed(&stop) {
                 // At once; the action ends everything else after the frame.
                 window.backend.stop();

@@ -29,9 +29,9 @@ pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbo
     let usual = if ui.ctx().content_rect().width() < NARROW { 208.0 } else { 248.0 };
     let panel = Panel::right("inspector").frame(frame).default_size(usual).size_range(200.0..=420.0);
     let (view, screen) = (std::sync::Arc::clone(&window.view), window.settings.screen);
-    let state = &mut window.panels;
+    let (state, undo_rest) = (&mut window.panels, &mut window.undo_rest);
     panel.show_separator_line(false).show(ui, |ui| {
-        undo::show(&view, screen, ui, outbox);
+        undo::show(&view, screen, undo_rest, ui, outbox);
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| match screen {
             Screen::Commission => show_commission_inspector(ui, &view, outbox),
             Screen::Live => live(ui, &view, state, outbox),

@@ -9,6 +9,7 @@ mod apply;
 mod arrangement;
 mod ask;
 mod backend;
+mod closing;
 mod commission;
 mod connect;
 mod dialogs;
@@ -50,6 +51,7 @@ mod tiles;
 mod touch_window;
 mod transport;
 mod truth_band;
+mod unaccepted;
 mod undo;
 mod world_menu;
 
@@ -168,6 +170,7 @@ pub struct PlumblineWindow {
     /// The one button of the bottom line, and that of commissioning, when they mean something new.
     primary_rest: Rest<Action>,
     commission_rest: Rest<Vec<Action>>,
+    undo_rest: Rest<()>,
     touch_window: TouchWindow,
     /// When monitors were looked for last, by the clock of the window, s.
     monitors_found_s: f64,
@@ -219,6 +222,7 @@ impl PlumblineWindow {
             may_open_commissioning: options.opens_commissioning,
             primary_rest: Rest::default(),
             commission_rest: Rest::default(),
+            undo_rest: Rest::default(),
             touch_window: TouchWindow::default(),
             monitors_found_s: f64::NEG_INFINITY,
         }

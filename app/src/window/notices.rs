@@ -27,6 +27,8 @@ pub(super) struct NoticeList {
     times: u32,
     unread: usize,
     history_open: bool,
+    /// In this pass: a press of the button that opened the list closes it, and does not open it anew.
+    closed_in_pass: Option<u64>,
     /// What the operator asked to be written and no message has told of yet.
     awaited: Vec<PathBuf>,
 }
@@ -112,8 +114,9 @@ impl NoticeList {
         self.history_open
     }
 
-    pub(super) fn toggle_history(&mut self) {
-        self.history_open = !self.history_open;
+    pub(super) fn toggle_history(&mut self, ctx: &Context) {
+        let just_closed = self.closed_in_pass.take() == Some(ctx.cumulative_pass_nr());
+        self.history_open = !self.history_open && !just_closed;
         self.unread = 0;
     }
 
@@ -154,6 +157,7 @@ impl NoticeList {
         self.unread = 0;
         if shown.close {
             self.history_open = false;
+            self.closed_in_pass = Some(ctx.cumulative_pass_nr());
         }
     }
 }
@@ -186,7 +190,7 @@ mod tests {
             Arc::from([notice(2, NoticeLevel::Error), notice(3, NoticeLevel::Warning)]);
         list.take(&later);
         assert_eq!((list.shown.history().count(), list.unread()), (3, 2));
-        list.toggle_history();
+        list.toggle_history(&Context::default());
         assert_eq!(list.unread(), 0);
     }
 

@@ -32,6 +32,12 @@ impl<T: PartialEq> Rest<T> {
         }
     }
 
+    /// It was pressed: what it means next is not pressed by the same hand.
+    pub(super) fn begin(&mut self, ctx: &egui::Context) {
+        self.until_s = ctx.input(|input| input.time) + REST_S;
+        ctx.request_repaint_after_secs(REST_S as f32);
+    }
+
     /// Whether it is not to be pressed yet.
     pub(super) fn is_on(&self, ctx: &egui::Context) -> bool {
         ctx.input(|input| input.time) < self.until_s

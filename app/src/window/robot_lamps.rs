@@ -18,7 +18,14 @@ use crate::operator::{Action, Outbox, RobotAction, Screen};
 const SLOW_BUS_HZ: f64 = 50.0;
 
 /// What the STOP button says.
-pub(super) fn arm_state(robot: &RobotView) -> ArmState {
+pub(super) fn arm_state(view: &View) -> ArmState {
+    match of_robot(&view.robot) {
+        ArmState::Moving if view.mount.tour.is_some_and(|tour| !tour.waits) => ArmState::HeadMoving,
+        state => state,
+    }
+}
+
+fn of_robot(robot: &RobotView) -> ArmState {
     match robot.connection {
         Connection::None | Connection::Connecting { .. } => return ArmState::NotConnected,
         // It is still there, and holds, or does not.

@@ -53,6 +53,8 @@ pub enum Asked {
     CommandKeepOpen(Command),
     /// What moves is held, then the window closes.
     HoldAndClose,
+    /// The window closes, whatever is open.
+    Close,
     /// Paths for the window to use.
     Answer(Answer),
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use egui::{CentralPanel, Color32, Frame, Rect, Stroke, Ui, Visuals, WidgetText};
+use egui::{CentralPanel, Color32, Frame, Rect, RichText, Stroke, Ui, Visuals, WidgetText};
 use egui_tiles::{Behavior, SimplificationOptions, TabState, TileId, Tiles, UiResponse};
 use plumbline_engine::View;
 use plumbline_engine::view::{Connection, SourceStatus};
@@ -24,40 +24,57 @@ pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbo
             return panels::show_start(ui, &window.settings.recent_sources, outbox);
         }
         let narrow = ui.available_width() < NARROW;
+        let tight = ui.available_width() < TIGHT;
         let arranged = window.settings.arrangement(screen);
         let tree = if narrow { window.narrow.of(screen, arranged) } else { arranged };
         let (view, state, rects) = (&window.view, &mut window.panels, &mut window.tile_rects);
         rects.clear();
-        let mut behavior = PaneBehavior { view, screen, narrow, state, outbox, rects };
+        let mut behavior = PaneBehavior { view, screen, narrow, tight, state, outbox, rects };
         tree.ui(&mut behavior, ui);
     });
 }
 
+/// In less room than this, pt, titles stand closer to each other and smaller, so that none is cut.
+const TIGHT: f32 = 760.0;
 /// What "Copy" takes beside the titles; where there is less, three dots stand for it.
 const COPY_WIDTH: f32 = 52.0;
 /// On each side of a title.
 const TITLE_SPACING: f32 = 12.0;
-
-fn titles_width(ui: &Ui, tiles: &Tiles<Pane>, tabs: &egui_tiles::Tabs) -> f32 {
-    let panes = tabs.children.iter().filter_map(|child| tiles.get_pane(child));
-    let widths = panes.map(|pane| {
-        let title: WidgetText = pane.title().into();
-        let galley =
-            title.into_galley(ui, Some(egui::TextWrapMode::Extend), f32::INFINITY, egui::TextStyle::Button);
-        galley.size().x + 2.0 * TITLE_SPACING
-    });
-    widths.sum()
-}
+/// The same where it is tight.
+const TIGHT_SPACING: f32 = 6.0;
 
 struct PaneBehavior<'a> {
     view: &'a View,
     screen: Screen,
     /// The panes are tabs, one at a time.
     narrow: bool,
+    /// Titles have little room.
+    tight: bool,
     state: &'a mut PanelState,
     outbox: &'a mut Outbox,
     /// Where the tiles in front lie.
     rects: &'a mut BTreeMap<Pane, Rect>,
+}
+
+impl PaneBehavior<'_> {
+    fn title(&self, pane: Pane) -> WidgetText {
+        let title = RichText::new(pane.title());
+        if self.tight { title.text_style(egui::TextStyle::Small).into() } else { title.into() }
+    }
+
+    fn title_spacing(&self) -> f32 {
+        if self.tight { TIGHT_SPACING } else { TITLE_SPACING }
+    }
+
+    fn titles_width(&self, ui: &Ui, tiles: &Tiles<Pane>, tabs: &egui_tiles::Tabs) -> f32 {
+        let panes = tabs.children.iter().filter_map(|child| tiles.get_pane(child));
+        let extend = Some(egui::TextWrapMode::Extend);
+        let widths = panes.map(|pane| {
+            let galley = self.title(*pane).into_galley(ui, extend, f32::INFINITY, egui::TextStyle::Button);
+            galley.size().x + 2.0 * self.title_spacing()
+        });
+        widths.sum()
+    }
 }
 
 impl Behavior<Pane> for PaneBehavior<'_> {
@@ -72,7 +89,7 @@ impl Behavior<Pane> for PaneBehavior<'_> {
     }
 
     fn tab_title_for_pane(&mut self, pane: &Pane) -> WidgetText {
-        pane.title().into()
+        self.title(*pane)
     }
 
     /// Saving and copying of what the tile shows.
@@ -85,7 +102,7 @@ impl Behavior<Pane> for PaneBehavior<'_> {
         _scroll_offset: &mut f32,
     ) {
         let Some(pane) = tabs.active.and_then(|active| tiles.get_pane(&active)) else { return };
-        let room = ui.available_width() - titles_width(ui, tiles, tabs);
+        let room = ui.available_width() - self.titles_width(ui, tiles, tabs);
         let text = if room > COPY_WIDTH { "Copy" } else { "…" };
         let picture = picture_key(*pane).and_then(|key| self.state.textures.last(key)).cloned();
         let (view, state) = (self.view, &*self.state);
@@ -117,7 +134,7 @@ impl Behavior<Pane> for PaneBehavior<'_> {
     }
 
     fn tab_title_spacing(&self, _visuals: &Visuals) -> f32 {
-        TITLE_SPACING
+        self.title_spacing()
     }
 
     fn tab_bar_color(&self, visuals: &Visuals) -> Color32 {

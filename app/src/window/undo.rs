@@ -4,19 +4,21 @@ use egui::{Button, Label, Margin, Panel, Ui};
 use plumbline_engine::View;
 use plumbline_widgets::theme::{self, space};
 
+use super::rest::Rest;
 use crate::operator::actions::undo::undo;
 use crate::operator::words::capitalized;
 use crate::operator::{Action, Outbox, Screen, shortcut_text};
 
 pub(super) const HEIGHT: f32 = 40.0;
 
-pub(super) fn show(view: &View, screen: Screen, ui: &mut Ui, outbox: &mut Outbox) {
+pub(super) fn show(view: &View, screen: Screen, rest: &mut Rest<()>, ui: &mut Ui, outbox: &mut Outbox) {
     let undo = undo(view, screen);
+    let rests = rest.is_on(ui.ctx());
     let frame = egui::Frame::new().inner_margin(Margin { top: space::S as i8, ..Margin::ZERO });
     let foot = Panel::bottom("undo").frame(frame).exact_size(HEIGHT).resizable(false);
     foot.show_separator_line(false).show(ui, |ui| {
         ui.horizontal(|ui| {
-            let button = ui.add_enabled(undo.is_ok(), Button::new("Undo"));
+            let button = ui.add_enabled(undo.is_ok() && !rests, Button::new("Undo"));
             let button = match &undo {
                 Ok(undo) => {
                     let keys = shortcut_text(ui.ctx(), Action::Undo).unwrap_or_default();
@@ -25,6 +27,8 @@ pub(super) fn show(view: &View, screen: Screen, ui: &mut Ui, outbox: &mut Outbox
                 Err(why) => button.on_disabled_hover_text(capitalized(why)),
             };
             if button.clicked() {
+                // Pressed twice at once it would take back two results, the second one unseen.
+                rest.begin(ui.ctx());
                 outbox.act(Action::Undo);
             }
             if let Ok(undo) = &undo {

@@ -24,6 +24,7 @@ fn session(name: &str, started: &str, touches: usize) -> GapSession {
         folder: PathBuf::from("sessions").join(name),
         name: name.to_owned(),
         started: started.parse().ok(),
+        is_check: name.ends_with("_check"),
         touches,
         poses: 0,
         localizations: 0,

@@ -113,6 +113,7 @@ pub fn map(method: Method, proposed: bool) -> Arc<ModelMap> {
         method: Some(method),
         proposed,
         touches: touches.collect(),
+        without_m: model.provenance().without.map(|errors| errors.mean_2d_m),
         border_m: model
             .border()
             .map(|border| border.rings().iter().map(|ring| ring.iter().map(on_table).collect()).collect())

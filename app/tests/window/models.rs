@@ -44,6 +44,23 @@ fn on_comparison(fake: &Fake) -> Harness<'static, PlumblineWindow> {
 }
 
 #[test]
+fn no_other_button_takes_the_place_of_the_one_that_was_pressed() {
+    let fake = Fake::over(with(trained()));
+    let mut window = on_comparison(&fake);
+    let place = |window: &Harness<'_, PlumblineWindow>| window.get_by_label("Use M3").rect();
+    let before = place(&window);
+    click_at(&mut window, before.center());
+    assert_eq!(models(&fake), [ModelsCommand::Accept(Method::M3)]);
+    let others = trained().proposals.into_iter().filter(|model| model.method() != Method::M3).collect();
+    let in_use = in_use().in_use;
+    fake.show(with(ModelsView { proposals: others, in_use, ..trained() }));
+    window.run_steps(3);
+    assert_eq!(place(&window), before);
+    click_at(&mut window, before.center());
+    assert_eq!(models(&fake), [], "it is in use already");
+}
+
+#[test]
 fn without_touches_it_leads_to_them() {
     let fake = Fake::over(everything());
     let mut window = fake.window(on_models());

@@ -8,12 +8,14 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use plumbline::{PlumblineWindow, Screen, WindowSettings};
 use plumbline_engine::view::{
-    EyesView, HandEyeView, JobState, JobView, MotionState, MountTour, MountView, ReplayView, RobotView,
-    SourceStatus, SourceView,
+    EyesView, HandEyeView, JobState, JobView, ModelsView, MotionState, MountTour, MountView, ReplayView,
+    RobotView, SourceStatus, SourceView,
 };
 use plumbline_engine::{Command, EyesCommand, JobCommand, JobId, SourceCommand, View};
 
-use crate::fake::{Fake, click, says, shows};
+use crate::fake::{Fake, click, click_at, says, shows};
+use crate::made_up::everything;
+use crate::made_up_models;
 
 /// A job, a playing recording and automatic capture: all that can run.
 fn everything_runs() -> View {
@@ -197,6 +199,68 @@ fn closing_while_something_moves_asks_and_stops_first() {
     let mut window = fake.window(WindowSettings::default());
     close(&mut window);
     assert!(!says(&window, "Close while the robot moves?"), "nothing moves");
+}
+
+#[test]
+fn closing_asks_where_what_was_solved_would_be_lost() {
+    let open = View { models: Arc::new(made_up_models::trained()), ..moving() };
+    let still = |view: View| View { robot: View::default().robot, ..view };
+    let fake = Fake::over(open.clone());
+    let mut window = fake.window(WindowSettings::default());
+    close(&mut window);
+    assert!(says(&window, "Close while the robot moves?"), "what moves comes first");
+
+    let in_use = made_up_models::in_use();
+    let together = made_up_models::trained().proposals;
+    let one_of_them = ModelsView { proposals: together, ..in_use.clone() };
+    for (models, asks) in [
+        (ModelsView { in_use: None, ..made_up_models::trained() }, true),
+        (one_of_them, false),
+        (in_use, false),
+    ] {
+        let fake = Fake::over(still(View { models: Arc::new(models), ..open.clone() }));
+        let mut window = fake.window(WindowSettings::default());
+        close(&mut window);
+        assert_eq!(says(&window, "Closing loses that."), asks);
+        if asks {
+            assert!(says(&window, "Solved and not accepted: the correction models."));
+            click(&mut window, "Cancel");
+            assert!(!says(&window, "Closing loses that."), "the window stays");
+            close(&mut window);
+            click(&mut window, "Close all the same");
+            close(&mut window);
+            assert!(!says(&window, "Closing loses that."), "it is asked once");
+            assert_eq!(fake.take_stops(), 0, "nothing moves that could be stopped");
+        }
+    }
+}
+
+#[test]
+fn a_second_press_on_messages_closes_them() {
+    let fake = Fake::over(everything_runs());
+    let mut window = fake.window(WindowSettings::default());
+    let at = window.get_by_label("Messages").rect().center();
+    click_at(&mut window, at);
+    assert!(shows(&window, "Clear messages"));
+    click_at(&mut window, at);
+    assert!(!shows(&window, "Clear messages"), "it does not open anew");
+    click_at(&mut window, at);
+    assert!(shows(&window, "Clear messages"));
+}
+
+#[test]
+fn what_turns_is_said_to_be_the_head() {
+    let tour = MountTour { pose: 2, of: 8, waits: false };
+    let connected = everything();
+    let robot = Arc::new(RobotView { motion: moving().robot.motion.clone(), ..(*connected.robot).clone() });
+    let moving = View { robot, ..connected };
+    let turning = MountView { tour: Some(tour), ..(*moving.mount).clone() };
+    let turning = View { mount: Arc::new(turning), ..moving.clone() };
+    for (view, said) in [(turning, "head moving"), (moving, "arm moving")] {
+        let window = Fake::over(view).window(WindowSettings::default());
+        let stop = window.get_by_label("STOP");
+        assert_eq!(stop.accesskit_node().value().as_deref(), Some(said));
+    }
 }
 
 #[test]

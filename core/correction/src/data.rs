@@ -224,6 +224,13 @@ impl TouchData {
         }
     }
 
+    /// Errors of targets that are sent as they are: where each pixel lies on the screen, less the point that was
+    /// sent, m.
+    pub fn sent_as_they_are_m(&self) -> Vec<[f64; 3]> {
+        let error = |touch: &Touch| (self.screen.point_at(touch.pixel).coords - touch.sent.coords).into();
+        self.touches.iter().map(error).collect()
+    }
+
     /// The touched pixels.
     pub fn pixels(&self) -> Vec<Pixel<Screen>> {
         self.touches.iter().map(|touch| touch.pixel).collect()

@@ -95,6 +95,10 @@ pub struct Provenance {
     pub left_out: Vec<String>,
     /// `None` for an imported model.
     pub options: Option<TrainOptions>,
+    /// Errors of targets sent as they are, on the same touches: what there is without a model. As the screen lay
+    /// for the training, wherever it is placed later. `None` for an imported model.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub without: Option<Errors>,
     /// Errors on the touches that it was trained on.
     pub training: Option<Errors>,
     /// Errors on touches that were held out.

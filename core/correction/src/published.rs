@@ -79,6 +79,7 @@ impl CorrectionModel {
             touches: vec![],
             left_out: vec![],
             options: None,
+            without: None,
             training: None,
             cross_validation: None,
             remarks,

@@ -158,6 +158,7 @@ pub fn train(
         touches: data.touches.iter().map(Into::into).collect(),
         left_out: data.left_out.clone(),
         options: Some(options.clone()),
+        without: Errors::of(&data.sent_as_they_are_m()),
         training: Errors::of(&parts.residuals_m(data)),
         cross_validation: cross_validation(residuals_m, blocks, options.seed),
         remarks: vec![],

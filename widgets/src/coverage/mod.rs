@@ -79,10 +79,10 @@ impl Coverage {
             missing.push(format!("boards tilted by {}", range_text(range, Quantity::Angle)));
         }
         if missing.is_empty() {
-            return "Nothing is missing: more pairs make it only slightly better.".to_owned();
+            return "Everything was shown: more pairs make it only slightly better.".to_owned();
         }
         let shown = missing.len().min(3);
-        format!("Missing: {}.", missing[..shown].join("; "))
+        format!("Not shown yet: {}.", missing[..shown].join("; "))
     }
 }
 
@@ -236,10 +236,10 @@ mod tests {
         for i in 0..200 {
             coverage.distance_m.add(0.15 + 0.5 * f64::from(i) / 200.0);
         }
-        assert_eq!(coverage.advice(), "Missing: boards tilted by 0 to 10°.");
+        assert_eq!(coverage.advice(), "Not shown yet: boards tilted by 0 to 10°.");
         for i in 0..200 {
             coverage.tilt_rad.add(50f64.to_radians() * f64::from(i) / 200.0);
         }
-        assert!(coverage.advice().starts_with("Nothing is missing"));
+        assert!(coverage.advice().starts_with("Everything was shown"));
     }
 }

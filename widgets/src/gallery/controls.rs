@@ -124,7 +124,9 @@ pub(super) fn buttons(ui: &mut Ui, state: &mut GalleryState) {
     primary_button(ui, "Solve 0 pairs", Some("At least three pairs are needed."));
     theme::group_heading(ui, "Stop");
     ui.horizontal(|ui| {
-        for arm in [ArmState::Held, ArmState::Moving, ArmState::Free, ArmState::NotConnected] {
+        for arm in
+            [ArmState::Held, ArmState::Moving, ArmState::HeadMoving, ArmState::Free, ArmState::NotConnected]
+        {
             ui.push_id(arm.text(), |ui| stop_button(ui, arm));
         }
     });

@@ -2,7 +2,7 @@
 
 use egui::{Pos2, Rect, Stroke, pos2};
 
-use super::paint::Map;
+use super::paint::{Map, NAMED_FROM};
 use crate::theme;
 
 /// Distance of the hatching's lines, points.
@@ -72,7 +72,7 @@ impl Map {
             self.painter.line(closed.clone(), Stroke::new(4.5, theme::RIM));
             self.painter.line(closed, Stroke::new(2.0, theme::ON_IMAGE.text_strong));
         }
-        if border.name.is_empty() {
+        if border.name.is_empty() || self.painter.clip_rect().width() < NAMED_FROM {
             return None;
         }
         let lowest = rings.into_iter().flatten().reduce(|a, b| if b.y > a.y { b } else { a })?;

@@ -19,6 +19,8 @@ pub(super) const AXES: egui::Vec2 = vec2(34.0, 36.0);
 /// The part of it that is left and above.
 pub(super) const TOP_LEFT: egui::Vec2 = vec2(34.0, 18.0);
 
+/// On a narrower map names would cover what lies beside them, pt: they are left to the words around it.
+pub(super) const NAMED_FROM: f32 = 220.0;
 /// Where the names of the axes have less room, the unit alone is said, pt.
 const NAMES_WIDTH: f32 = 150.0;
 
@@ -245,6 +247,9 @@ impl Map {
             self.painter.extend(Shape::dashed_line(&points, stroke, 6.0, 4.0));
         } else {
             self.painter.line(points.clone(), stroke);
+        }
+        if self.painter.clip_rect().width() < NAMED_FROM {
+            return None;
         }
         let corner = points.iter().copied().reduce(|a, b| if b.x + b.y < a.x + a.y { b } else { a });
         let at = corner.filter(|_| !outline.name.is_empty())? + vec2(5.0, 4.0);

@@ -1,7 +1,6 @@
 //! What can be asked for by name of touching the screen.
 
 use std::borrow::Cow;
-use std::path::Path;
 
 use plumbline_engine::view::{ContactSource, TouchPhase};
 use plumbline_engine::{Command, TouchCommand, View};
@@ -89,9 +88,7 @@ pub(super) fn other_targets(view: &View, options: PlanOptions) -> PlanOptions {
     if options.purpose != Purpose::Check {
         return options;
     }
-    let is_check =
-        |folder: &Path| folder.file_name().is_some_and(|name| name.to_string_lossy().contains("_check"));
-    let made = view.gap.sessions.iter().filter(|session| is_check(&session.folder)).count() as u64;
+    let made = view.gap.sessions.iter().filter(|session| session.is_check).count() as u64;
     let before = view.touch.plan.as_ref().map(|plan| &plan.options);
     let planned = before.filter(|before| before.purpose == Purpose::Check);
     let next = planned.map_or(options.seed, |before| before.seed.wrapping_add(1));
@@ -320,6 +317,7 @@ mod tests {
             folder: name.into(),
             name: name.to_owned(),
             started: None,
+            is_check: name.ends_with("_check"),
             touches: 20,
             poses: 0,
             localizations: 0,

@@ -8,6 +8,7 @@ use plumbline_widgets::format;
 
 use super::onward;
 use super::sentence::{Guidance, say};
+use crate::operator::words::mount;
 use crate::operator::words::robot::{move_sentence, moved_name, silent_together};
 use crate::operator::{Action, MountAction, RobotAction, Screen};
 
@@ -140,9 +141,11 @@ pub(super) fn mount(view: &View) -> Guidance {
         return say("Calibrate the eyes first: how they sit in the head rests on their lenses.")
             .then("Calibrate the eyes", Action::Go(Screen::Collect));
     }
-    if mount.proposal.is_some() {
-        return say(next_or(view, "Solved. Look at the figures, then accept."))
-            .then("Accept the mount", Action::Mount(MountAction::Accept));
+    if let Some(proposal) = &mount.proposal {
+        let (good, verdict) = mount::verdict(proposal);
+        let said = say(format!("Solved. {verdict}"));
+        let said = if good { said } else { said.warn() };
+        return said.then("Accept the mount", Action::Mount(MountAction::Accept));
     }
     if !mount.planned.is_empty() {
         let poses = format::count(mount.planned.len(), "pose");

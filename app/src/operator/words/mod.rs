@@ -5,6 +5,7 @@ pub mod eyes;
 pub mod gap;
 pub mod grasp;
 pub mod health;
+pub mod mount;
 pub mod proof;
 pub mod robot;
 pub mod sources;

@@ -10,12 +10,13 @@ use plumbline_widgets::theme::{self, Role, space};
 
 use super::parts::{finding, line, state};
 use super::sizes::sizes;
-use crate::operator::GapAction;
+use crate::operator::guidance::guidance;
 use crate::operator::snapshot::gap::{Finding, NamedEffect, Verdict};
 use crate::operator::words::effect::runner_up;
 use crate::operator::words::gap as words;
 use crate::operator::words::proof::{Proof, Worth};
 use crate::operator::words::sentence;
+use crate::operator::{Action, GapAction, Screen};
 use crate::panels::parts::{action_button, undo_button};
 use crate::panels::{PanelContext, padded};
 
@@ -221,6 +222,11 @@ fn unexplained(ui: &mut Ui, finding: &Finding) {
 /// an experiment.
 fn offer(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     if cx.view.gap.addable().is_empty() {
+        return;
+    }
+    // Twice above each other would be one too many; on the way through commissioning the big button has its own.
+    let by_big_button = guidance(cx.view, Screen::Gap).next.map(|next| next.action);
+    if by_big_button == Some(Action::Gap(GapAction::Add)) && !cx.view.commission.is_on {
         return;
     }
     let wanted = cx.view.gap.wanted();

@@ -166,7 +166,8 @@ fn figures(ui: &mut Ui, facts: &Facts) {
     });
 }
 
-/// One button per proposal, the best first.
+/// One button per proposal, the best first. The one of what is in use stays in its place and does nothing: no
+/// other button takes the place of one that was just pressed.
 fn decide(ui: &mut Ui, cx: &mut PanelContext<'_>, facts: &Facts) {
     let models = &cx.view.models;
     if models.proposals.is_empty() {
@@ -174,12 +175,18 @@ fn decide(ui: &mut Ui, cx: &mut PanelContext<'_>, facts: &Facts) {
     }
     ui.horizontal_wrapped(|ui| {
         let best = facts.simplest().or(facts.best.map(|best| facts.judged[best].method));
-        let mut proposals: Vec<_> = models.proposals.iter().collect();
-        proposals.sort_by_key(|model| (Some(model.method()) != best, std::cmp::Reverse(model.method())));
-        for model in proposals {
-            let method = model.method();
-            let text = format!("Use {}", method.name());
-            if ui.button(text).on_hover_text(provenance(model)).clicked() {
+        let proposed = |method: Method| models.proposals.iter().find(|model| model.method() == method);
+        let in_use = models.in_use.as_ref().map(|model| model.method());
+        let offered = |method: &Method| proposed(*method).is_some() || in_use == Some(*method);
+        let mut methods: Vec<Method> = Method::ALL.into_iter().filter(offered).collect();
+        methods.sort_by_key(|method| (Some(*method) != best, std::cmp::Reverse(*method)));
+        for method in methods {
+            let button = egui::Button::new(format!("Use {}", method.name()));
+            let Some(model) = proposed(method) else {
+                ui.add_enabled(false, button).on_disabled_hover_text("It is in use");
+                continue;
+            };
+            if ui.add(button).on_hover_text(provenance(model)).clicked() {
                 cx.outbox.send(ModelsCommand::Accept(method));
             }
         }

@@ -133,14 +133,8 @@ pub fn length(error_m: [f64; 3]) -> f64 {
 }
 
 pub fn means_m(map: &ModelMap) -> Option<[f64; 2]> {
-    let count = map.touches.len() as f64;
-    let mean = |lengths: &mut dyn Iterator<Item = f64>| lengths.sum::<f64>() / count;
-    (count > 0.0).then(|| {
-        [
-            mean(&mut map.touches.iter().map(|touch| length(touch.before_m))),
-            mean(&mut map.touches.iter().map(|touch| length(touch.after_m))),
-        ]
-    })
+    let after_m: f64 = map.touches.iter().map(|touch| length(touch.after_m)).sum();
+    Some([map.without_m?, after_m / map.touches.len() as f64])
 }
 
 /// "Inside the border targets shift 21 mm on average, outside 54 mm: do not trust it there."
@@ -187,6 +181,7 @@ mod tests {
             method: Some(Method::M3),
             proposed: true,
             touches: vec![touch(0.3, 0.02, 0.004), touch(0.4, 0.022, 0.002)],
+            without_m: Some(0.021),
             border_m: vec![vec![[0.5, -0.1], [0.7, -0.1], [0.7, 0.1], [0.5, 0.1]]],
             screen_m: vec![[0.25, -0.2], [0.45, -0.2], [0.45, 0.2], [0.25, 0.2]],
             sd: field.clone(),

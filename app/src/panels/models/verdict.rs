@@ -1,6 +1,6 @@
 //! Which model is best, and whether that can be told.
 
-use plumbline_engine::view::{MapTouch, ModelMap, ModelsView};
+use plumbline_engine::view::{ModelMap, ModelsView};
 use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::seen::Seen;
 
@@ -76,7 +76,7 @@ impl Facts {
         Self {
             best,
             alike,
-            without_m: models.map.as_ref().and_then(|map| without_model_m(&map.touches)),
+            without_m: models.map.as_ref().and_then(|map| map.without_m),
             noise: data.and_then(|data| spread_of_repeats(data)),
             apart,
             judged,
@@ -130,11 +130,6 @@ fn judged(models: &ModelsView) -> Vec<Judged> {
         Some(Judged { method: model.method(), errors: held_out.errors, interval_m })
     });
     in_use.into_iter().collect()
-}
-
-fn without_model_m(touches: &[MapTouch]) -> Option<f64> {
-    let sum: f64 = touches.iter().map(|touch| touch.before_m[0].hypot(touch.before_m[1])).sum();
-    (!touches.is_empty()).then(|| sum / touches.len() as f64)
 }
 
 /// Methods that cannot be told apart from the best one: the interval of the difference holds nothing.

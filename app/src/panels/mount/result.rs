@@ -8,8 +8,8 @@ use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::key_value::big_figure;
 use plumbline_widgets::theme::{self, Role, space};
 
-use crate::operator::{Action, MountAction, words};
-use crate::panels::{PanelContext, padded};
+use crate::operator::{Action, MountAction, Verdict, words};
+use crate::panels::{PanelContext, padded, verdict_line};
 
 /// Axes of the head: what moving along and turning about them means for an eye.
 const AXES: [(&str, &str); 3] = [("forward", "roll"), ("left", "nod"), ("up", "turn")];
@@ -27,7 +27,12 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     }
     padded(ui, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            verdict(ui, mount);
+            if let Some(proposal) = &mount.proposal {
+                let (good, sentence) = words::mount::verdict(proposal);
+                verdict_line::show(ui, &Verdict { good, sentence });
+                ui.add_space(space::XS);
+            }
+            figures(ui, mount);
             table(ui, mount);
             if let Some(proposal) = &mount.proposal {
                 notes(ui, proposal);
@@ -37,7 +42,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     });
 }
 
-fn verdict(ui: &mut Ui, mount: &MountView) {
+fn figures(ui: &mut Ui, mount: &MountView) {
     let (summary, what) = match (&mount.proposal, &mount.in_use) {
         (Some(proposal), _) => (proposal, "proposed"),
         (None, Some(in_use)) => (in_use, "in use"),

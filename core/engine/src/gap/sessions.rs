@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::store::KeptSession;
 use super::view::GapSession;
-use crate::ground::sessions::{Unread, folders, is_for_training, is_of_corners, title_of};
+use crate::ground::sessions::{Unread, folders, is_check, is_for_training, is_of_corners, title_of};
 use crate::ground::text::sentence;
 
 /// Tables that can be compared.
@@ -33,7 +33,9 @@ pub fn list(folder: &Path) -> Result<Vec<GapSession>, Unread> {
 pub fn listed(folder: PathBuf) -> GapSession {
     let started = Manifest::read(&folder.join(names::MANIFEST)).ok().map(|manifest| manifest.started);
     let name = title_of(&folder);
-    let listed = GapSession { folder, name, started, touches: 0, poses: 0, localizations: 0, problem: None };
+    let is_check = is_check(&folder);
+    let listed =
+        GapSession { folder, name, started, is_check, touches: 0, poses: 0, localizations: 0, problem: None };
     match Session::read(&listed.folder) {
         Ok(session) => {
             let touches = session.touches.as_ref().map_or(0, |table| table.row_count());
@@ -114,10 +116,14 @@ pub fn at_home(session: KeptSession, sessions: &Path) -> KeptSession {
 }
 
 /// What is compared once a run of touches is finished. One that checks is compared beside those that were learned
-/// from, since few touches alone tell little; corners only place the screen.
+/// from, since few touches alone tell little, and never beside those of another place; corners only place the screen.
 pub fn with_finished(mut chosen: Vec<PathBuf>, session: &Path) -> Vec<PathBuf> {
     if is_for_training(session) {
         chosen.clear();
+    }
+    // What was opened from elsewhere may be of another robot or of another day.
+    if chosen.iter().any(|other| other.parent() != session.parent()) {
+        return chosen;
     }
     if !is_of_corners(session) && !chosen.iter().any(|other| other == session) {
         chosen.push(session.to_owned());

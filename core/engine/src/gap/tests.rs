@@ -125,6 +125,8 @@ fn a_check_is_compared_beside_the_touches_that_were_learned_from() {
     assert_eq!(with_finished(both.clone(), &of("check")), both, "not twice");
     assert_eq!(with_finished(both, &touch), chosen, "what is learned from begins anew");
     assert_eq!(with_finished(vec![], &of("check")), [of("check")]);
+    let elsewhere = vec![PathBuf::from("other/sessions/2026-05-01T10-00-00_touch")];
+    assert_eq!(with_finished(elsewhere.clone(), &of("check")), elsewhere, "that may be another robot");
 }
 
 #[test]

@@ -52,6 +52,8 @@ pub struct GapSession {
     pub name: String,
     /// When it was begun.
     pub started: Option<Timestamp>,
+    /// Whether it was touched to check what had been learned.
+    pub is_check: bool,
     /// Rows of its tables.
     pub touches: usize,
     /// Poses measured from outside.

@@ -29,7 +29,12 @@ pub fn folders(folder: &Path) -> Result<Vec<PathBuf>, Unread> {
 /// Whether a session was touched to be learned from: not only its corners to place the screen, and
 /// not through a model to check that.
 pub fn is_for_training(folder: &Path) -> bool {
-    !is_of_corners(folder) && !named(folder).contains("_check")
+    !is_of_corners(folder) && !is_check(folder)
+}
+
+/// Whether a session was touched to check what had been learned.
+pub fn is_check(folder: &Path) -> bool {
+    named(folder).contains("_check")
 }
 
 /// Whether only the corners of the screen were touched, to place it.

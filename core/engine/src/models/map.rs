@@ -40,10 +40,12 @@ pub fn model_map(model: &CorrectionModel, screen: &Touchscreen, proposed: bool) 
         let point = screen.point_at(*pixel).coords;
         [point.x, point.y]
     };
+    let touches = touches(model, screen);
     ModelMap {
         method: Some(model.method()),
         proposed,
-        touches: touches(model, screen),
+        without_m: model.provenance().without.map(|errors| errors.mean_2d_m).or_else(|| without_m(&touches)),
+        touches,
         border_m: model
             .border()
             .map(|border| border.rings().iter().map(|ring| ring.iter().map(on_table).collect()).collect())
@@ -112,6 +114,12 @@ fn touches(model: &CorrectionModel, screen: &Touchscreen) -> Vec<MapTouch> {
         }
     };
     provenance.touches.iter().zip(&held_out.residuals_m).map(arrow).collect()
+}
+
+/// Mean length in the plane of the errors without a model.
+fn without_m(touches: &[MapTouch]) -> Option<f64> {
+    let sum_m: f64 = touches.iter().map(|touch| touch.before_m[0].hypot(touch.before_m[1])).sum();
+    (!touches.is_empty()).then(|| sum_m / touches.len() as f64)
 }
 
 impl Field {

@@ -78,6 +78,9 @@ pub struct ModelMap {
     /// One per touch: place on the screen (x, y), error without a model, error with it held out;
     /// m. Empty when the model was imported without its touches.
     pub touches: Vec<MapTouch>,
+    /// Mean error in the plane without a model, m: as the screen lay for the training, if the model tells, else as
+    /// the touches are drawn. `None` without touches.
+    pub without_m: Option<f64>,
     /// The border of the data: lines around its parts and around the holes in them, the largest part
     /// first, each its corners on the table (x, y), m. A place inside an odd number of lines is inside.
     /// Empty when the model was imported without its touches.

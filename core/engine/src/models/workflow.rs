@@ -94,9 +94,7 @@ impl ModelsWorkflow {
 
     /// Mean error in the plane without a model at the touches that the one in use was judged on, m.
     pub fn mean_before_m(&self) -> Option<f64> {
-        let touches = &self.in_use.as_ref()?.map.touches;
-        let sum_m: f64 = touches.iter().map(|touch| touch.before_m[0].hypot(touch.before_m[1])).sum();
-        (!touches.is_empty()).then(|| sum_m / touches.len() as f64)
+        self.in_use.as_ref()?.map.without_m
     }
 
     /// Proposals, then the one in use.

@@ -1,0 +1,80 @@
+//! Whether a solved mount of the eyes can be trusted, in a sentence.
+
+use plumbline_engine::view::MountSummary;
+use plumbline_widgets::format;
+
+use super::sentence;
+
+/// Of a normal distribution 95 % lie within so many standard deviations.
+const NORMAL_95: f64 = 1.96;
+
+/// Whether nothing speaks against it, and that as a sentence: "Good: …", or "Doubtful." and the first doubt.
+pub fn verdict(summary: &MountSummary) -> (bool, String) {
+    let doubts: Vec<&String> = summary.not_seen.iter().chain(&summary.remarks).collect();
+    if let [first, more @ ..] = doubts.as_slice() {
+        let more = match more.len() {
+            0 => String::new(),
+            1 => " One more doubt is listed.".to_owned(),
+            n => format!(" {n} more doubts are listed."),
+        };
+        return (false, format!("Doubtful. {}{more}", sentence(first)));
+    }
+    let sd_rad = summary.turned_sd_rad.iter().fold(0.0_f64, |most, sd| most.max(*sd));
+    let views = match summary.views {
+        1 => "1 view agrees".to_owned(),
+        n => format!("{} agree", format::count(n, "view")),
+    };
+    let error = format::px(summary.rms_px);
+    let known = format::degrees(NORMAL_95 * sd_rad);
+    (true, format!("Good: {views} to {error}, and where the eyes look is known to {known} (95 %)."))
+}
+
+#[cfg(test)]
+mod tests {
+    use plumbline_model::Pose;
+
+    use super::*;
+
+    fn summary() -> MountSummary {
+        MountSummary {
+            head_from_left: Pose::identity(),
+            moved_m: [0.0; 3],
+            turned_rad: [0.0; 3],
+            moved_sd_m: [0.001; 3],
+            turned_sd_rad: [0.0005, 0.001, 0.0002],
+            rms_px: 0.21,
+            views: 12,
+            rejected: vec![],
+            not_seen: vec![],
+            remarks: vec![],
+            at: jiff::Timestamp::UNIX_EPOCH,
+        }
+    }
+
+    #[test]
+    fn what_has_no_doubt_is_good_and_says_how_far_it_is_known() {
+        let (good, said) = verdict(&summary());
+        assert!(good);
+        assert_eq!(
+            said,
+            format!(
+                "Good: 12 views agree to {}, and where the eyes look is known to {} (95 %).",
+                format::px(0.21),
+                format::degrees(1.96e-3)
+            )
+        );
+    }
+
+    #[test]
+    fn a_doubt_comes_first_and_the_others_are_counted() {
+        let doubtful = MountSummary {
+            not_seen: vec!["How far the eyes lie forward was not seen.".to_owned()],
+            remarks: vec!["the gears have slack".to_owned()],
+            ..summary()
+        };
+        let (good, said) = verdict(&doubtful);
+        assert!(!good);
+        assert!(said.starts_with("Doubtful. How far the eyes lie forward was not seen."), "{said}");
+        assert!(said.ends_with("One more doubt is listed."), "{said}");
+    }
+}

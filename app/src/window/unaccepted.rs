@@ -1,0 +1,66 @@
+//! What is lost when the window closes.
+
+use egui::Ui;
+use plumbline_engine::View;
+
+use super::sheet::{Asked, buttons, title};
+
+/// What was solved, is proposed, and is kept nowhere before it is accepted.
+pub(super) fn unaccepted(view: &View) -> Vec<&'static str> {
+    let eyes = view.eyes.proposal.as_ref().is_some_and(|proposal| proposal.stale.is_none());
+    let of = [
+        (eyes, "the calibration of the eyes"),
+        (view.mount.proposal.is_some(), "the mount of the eyes"),
+        (view.touch.placement_proposal.is_some(), "the place of the screen"),
+        (are_models_open(view), "the correction models"),
+        (view.handeye.proposal.is_some(), "what hand and eyes agree on"),
+    ];
+    of.into_iter().filter_map(|(is_open, what)| is_open.then_some(what)).collect()
+}
+
+/// Of models that were trained on the same touches one is enough.
+fn are_models_open(view: &View) -> bool {
+    let models = &view.models;
+    let Some(in_use) = &models.in_use else { return !models.proposals.is_empty() };
+    let used = in_use.provenance();
+    models.proposals.iter().any(|proposal| {
+        let made_of = proposal.provenance();
+        made_of.session != used.session || made_of.touches != used.touches
+    })
+}
+
+/// Asks whether to close although something was not accepted.
+pub(super) fn sheet_of_unaccepted(ui: &mut Ui, view: &View) -> Asked {
+    let about = format!("Solved and not accepted: {}. Closing loses that.", listed(&unaccepted(view)));
+    title(ui, "Close without accepting?", &about);
+    match buttons(ui, "Close all the same", true) {
+        Some(true) => Asked::Close,
+        Some(false) => Asked::Closed,
+        None => Asked::Open,
+    }
+}
+
+/// "a", "a and b", "a, b and c".
+fn listed(what: &[&str]) -> String {
+    match what {
+        [] => "nothing".to_owned(),
+        [one] => (*one).to_owned(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_listed_reads_as_a_sentence() {
+        assert_eq!(listed(&["a"]), "a");
+        assert_eq!(listed(&["a", "b", "c"]), "a, b and c");
+    }
+
+    #[test]
+    fn nothing_is_asked_where_nothing_is_open() {
+        assert!(unaccepted(&View::default()).is_empty());
+    }
+}
