@@ -242,13 +242,8 @@ impl<'a> JogPad<'a> {
         let (title, hint) = match (enabled, intent) {
             (true, Some(intent)) => ("Moving".to_owned(), describe(intent)),
             (true, None) => ("Enabled".to_owned(), "press a direction".to_owned()),
-            (false, _) if rect.width() < PAD_WIDTH => {
-                ("Hold to move".to_owned(), "or Shift over this pad".to_owned())
-            }
-            (false, _) => (
-                "Hold to move".to_owned(),
-                "hold Shift over this pad, or this button; arrows, page up/down, Q, E".to_owned(),
-            ),
+            // Which key is which direction stands at each button, where it is pointed at.
+            (false, _) => ("Hold to move".to_owned(), "or hold Shift over this pad".to_owned()),
         };
         let strong = theme::strong_font(ui);
         painter.text(rect.center() - vec2(0.0, 8.0), Align2::CENTER_CENTER, title, strong, ink);

@@ -23,15 +23,23 @@ use crate::panels::{
 /// In a window that is not wider than this the tiles need what the inspector can spare, pt.
 const NARROW: f32 = 1120.0;
 
+/// What stands beside a slider takes so much, pt.
+const BESIDE_SLIDER: f32 = 160.0;
+const LEAST_SLIDER: f32 = 32.0;
+const MOST_SLIDER: f32 = 100.0;
+
 pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
     let margin = egui::Margin::symmetric(space::M as i8, space::S as i8);
     let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(margin);
-    let usual = if ui.ctx().content_rect().width() < NARROW { 208.0 } else { 248.0 };
+    let usual = if ui.ctx().content_rect().width() < NARROW { 232.0 } else { 248.0 };
     let panel = Panel::right("inspector").frame(frame).default_size(usual).size_range(200.0..=420.0);
     let (view, screen) = (std::sync::Arc::clone(&window.view), window.settings.screen);
     let (state, undo_rest) = (&mut window.panels, &mut window.undo_rest);
     panel.show_separator_line(false).show(ui, |ui| {
         undo::show(&view, screen, undo_rest, ui, outbox);
+        // Beside the number and the name of a slider: more would make the whole inspector wider, for good.
+        ui.spacing_mut().slider_width =
+            (ui.available_width() - BESIDE_SLIDER).clamp(LEAST_SLIDER, MOST_SLIDER);
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| match screen {
             Screen::Commission => show_commission_inspector(ui, &view, outbox),
             Screen::Live => live(ui, &view, state, outbox),

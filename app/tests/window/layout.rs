@@ -193,6 +193,29 @@ fn no_text_is_cut_or_covered_where_there_is_much_to_show() {
     assert_none(&all);
 }
 
+/// In a small window the tiles need what the inspector can spare: what stands in it never makes it wider, on no
+/// screen, since it stays so on all that come after.
+#[test]
+fn nothing_makes_the_inspector_of_a_small_window_wider() {
+    const MOST: f32 = 226.0;
+    let all = Screen::ALL.map(|screen| (screen, made_up::everything()));
+    let mut faults = Vec::new();
+    for (screen, view) in all.into_iter().chain(much_to_show()) {
+        let settings = WindowSettings { screen, ..WindowSettings::default() };
+        let mut window = Fake::over(view).window_of_size(settings, [1024.0, 700.0]);
+        window.run_steps(6);
+        let width =
+            1024.0 - window.get_all_by_label("Undo").map(|undo| undo.rect().left()).fold(0.0, f32::max);
+        if width > MOST {
+            let lines = lines(&window).into_iter().filter(|line| line.rect.left() > 1024.0 - width - SLACK);
+            let widest = lines.max_by(|a, b| a.rect.right().total_cmp(&b.rect.right()));
+            let widest = widest.map_or_else(String::new, |line| format!("{:?} at {}", line.text, line.rect));
+            faults.push(format!("{screen:?}: {width} pt, {widest}"));
+        }
+    }
+    assert_none(&faults);
+}
+
 /// What the usual laptop and a small one leave of the screen.
 const LAPTOPS: [[f32; 2]; 2] = [[1280.0, 800.0], [1024.0, 700.0]];
 

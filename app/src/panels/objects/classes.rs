@@ -80,14 +80,14 @@ pub fn rates(ui: &mut Ui, detect: &DetectView, outbox: &mut Outbox) {
         ui.label(theme::weak(ui, "Nothing was seen since the last reset."));
         return;
     }
-    let grid = egui::Grid::new("rates").num_columns(5).spacing([space::S, 2.0]);
+    let grid = egui::Grid::new("rates").num_columns(5).spacing([space::XS, 2.0]).min_col_width(8.0);
     grid.show(ui, |ui| {
         for (title, about) in [
             ("", ""),
-            ("left", "Share of the pairs in which the left eye saw one"),
-            ("right", "Share of the pairs in which the right eye saw one"),
+            ("L", "Share of the pairs in which the left eye saw one"),
+            ("R", "Share of the pairs in which the right eye saw one"),
             ("agree", "Share of its objects that both eyes saw as one and the same"),
-            ("missed", "Share of the objects that usually are there and that neither eye saw"),
+            ("lost", "Share of the objects that usually are there and that neither eye saw"),
         ] {
             let label = ui.label(theme::small(ui, title));
             if !about.is_empty() {
@@ -105,7 +105,7 @@ pub fn rates(ui: &mut Ui, detect: &DetectView, outbox: &mut Outbox) {
             ui.end_row();
         }
     });
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         ui.label(theme::small(ui, format!("over the last {}", format::count(detect.counted, "pair"))));
         if ui.small_button("Count anew").clicked() {
             outbox.send(Command::from(DetectCommand::ResetRates));

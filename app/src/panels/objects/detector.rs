@@ -79,9 +79,10 @@ pub fn choice(ui: &mut Ui, detect: &DetectView, outbox: &mut Outbox) {
 fn provider(ui: &mut Ui, detect: &DetectView, outbox: &mut Outbox) {
     let before = detect.settings.provider;
     let mut provider = before;
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         let label = ui.label(theme::weak(ui, "Computed by"));
         egui::ComboBox::from_id_salt("provider")
+            .width(72.0)
             .selected_text(provider.to_string())
             .show_ui(ui, |ui| {
                 for other in Provider::ALL {
