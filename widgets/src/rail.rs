@@ -6,6 +6,7 @@ use crate::glyph::{self, Glyph};
 use crate::theme::{self, Tokens, space};
 
 const HEIGHT: f32 = 32.0;
+const LEAST_HEIGHT: f32 = 26.0;
 const GLYPH_SIZE: f32 = 11.0;
 
 /// How far a step is.
@@ -70,12 +71,13 @@ pub struct RailStep<'a> {
     number: Option<u32>,
     state: StepState<'a>,
     selected: bool,
+    height: f32,
 }
 
 impl<'a> RailStep<'a> {
     /// A step by its name.
     pub fn new(name: &'a str, state: StepState<'a>) -> Self {
-        Self { name, number: None, state, selected: false }
+        Self { name, number: None, state, selected: false, height: HEIGHT }
     }
 
     /// Its place in the order of work.
@@ -90,10 +92,17 @@ impl<'a> RailStep<'a> {
         self
     }
 
+    /// Less high than usual by so much, down to what is still easy to hit: where all steps shall be in sight.
+    pub fn lower_by(mut self, less: f32) -> Self {
+        self.height = (HEIGHT - less.max(0.0)).max(LEAST_HEIGHT);
+        self
+    }
+
     /// Draws it over the available width. The label for tests is the name; the value is the
     /// state in a word.
     pub fn show(self, ui: &mut Ui) -> Response {
-        let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
+        let (rect, response) =
+            ui.allocate_exact_size(vec2(ui.available_width(), self.height), Sense::click());
         response.widget_info(|| {
             let mut info = WidgetInfo::selected(egui::Role::Tab, ui.is_enabled(), self.selected, self.name);
             info.current_text_value = Some(self.state.word().to_owned());

@@ -16,6 +16,8 @@ const WIDTH: f32 = 176.0;
 /// Height of all steps with the parts of "Eyes"; where there is less, the parts stand only on their own
 /// screens.
 const ALL_ROWS: f32 = 602.0;
+/// How many steps there are.
+const STEPS: f32 = 13.0;
 /// Height of what belongs to "Detect".
 const DETECT_ROWS: f32 = 52.0;
 
@@ -28,29 +30,40 @@ pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
         ui.spacing_mut().item_spacing.y = 2.0;
         let wanted = if screen.is_detect() { ALL_ROWS + DETECT_ROWS } else { ALL_ROWS };
         let parts = screen.is_eyes() || ui.available_height() >= wanted;
-        // Where the window is low, no step is out of reach.
-        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| steps(ui, view, screen, parts, outbox));
+        let less = if parts { (wanted - ui.available_height()) / STEPS } else { 0.0 };
+        // Where the window is lower still, no step is out of reach.
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            let step = |name, state| RailStep::new(name, state).lower_by(less);
+            steps(ui, view, screen, parts, &step, outbox);
+        });
     });
 }
 
-/// `parts`: whether the parts of "Eyes" stand below it.
-fn steps(ui: &mut Ui, view: &View, screen: Screen, parts: bool, outbox: &mut Outbox) {
-    let commission = RailStep::new("Commission", commission_state(view));
+/// `parts`: whether the parts of "Eyes" stand below it; `step`: how one looks.
+fn steps<'a>(
+    ui: &mut Ui,
+    view: &'a View,
+    screen: Screen,
+    parts: bool,
+    step: &dyn Fn(&'a str, StepState<'a>) -> RailStep<'a>,
+    outbox: &mut Outbox,
+) {
+    let commission = step("Commission", commission_state(view));
     if why(commission.selected(screen == Screen::Commission).show(ui), view, Screen::Commission).clicked() {
         outbox.act(Action::Go(Screen::Commission));
     }
-    let live = RailStep::new("Live", StepState::Always).selected(screen == Screen::Live).show(ui);
+    let live = step("Live", StepState::Always).selected(screen == Screen::Live).show(ui);
     if why(live, view, Screen::Live).clicked() {
         outbox.act(Action::Go(Screen::Live));
     }
-    let step = RailStep::new("Eyes", eyes_state(view)).number(1).selected(screen.is_eyes()).show(ui);
-    if why(step, view, eyes_screen(&view.eyes)).clicked() {
+    let eyes = step("Eyes", eyes_state(view)).number(1).selected(screen.is_eyes()).show(ui);
+    if why(eyes, view, eyes_screen(&view.eyes)).clicked() {
         outbox.act(Action::Go(eyes_screen(&view.eyes)));
     }
     for part in Part::ALL.into_iter().filter(|_| parts) {
         part_row(ui, view, part, screen, outbox);
     }
-    let mount = RailStep::new("Mount", step_state(&view.mount.step)).number(2);
+    let mount = step("Mount", step_state(&view.mount.step)).number(2);
     if why(mount.selected(screen == Screen::Mount).show(ui), view, Screen::Mount).clicked() {
         outbox.act(Action::Go(Screen::Mount));
     }
@@ -61,25 +74,25 @@ fn steps(ui: &mut Ui, view: &View, screen: Screen, parts: bool, outbox: &mut Out
         ("Hand-eye", 6, step_state(&view.handeye.step), Screen::HandEye),
         ("Grasp", 7, step_state(&view.grasp.step), Screen::Grasp),
     ] {
-        let step = RailStep::new(name, state).number(number).selected(screen == target);
-        if why(step.show(ui), view, target).clicked() {
+        let one = step(name, state).number(number).selected(screen == target);
+        if why(one.show(ui), view, target).clicked() {
             outbox.act(Action::Go(target));
         }
     }
     ui.add_space(space::S);
-    let drift = RailStep::new("Drift", drift_state(view)).selected(screen == Screen::Drift).show(ui);
+    let drift = step("Drift", drift_state(view)).selected(screen == Screen::Drift).show(ui);
     if why(drift, view, Screen::Drift).clicked() {
         outbox.act(Action::Go(Screen::Drift));
     }
-    let timeline = RailStep::new("Timeline", StepState::Always).selected(screen == Screen::Timeline);
+    let timeline = step("Timeline", StepState::Always).selected(screen == Screen::Timeline);
     if why(timeline.show(ui), view, Screen::Timeline).clicked() {
         outbox.act(Action::Go(Screen::Timeline));
     }
-    let robot = RailStep::new("Robot", robot_state(view)).selected(screen == Screen::Robot).show(ui);
+    let robot = step("Robot", robot_state(view)).selected(screen == Screen::Robot).show(ui);
     if why(robot, view, Screen::Robot).clicked() {
         outbox.act(Action::Go(Screen::Robot));
     }
-    let detect = RailStep::new("Detect", detect_state(view)).selected(screen.is_detect()).show(ui);
+    let detect = step("Detect", detect_state(view)).selected(screen.is_detect()).show(ui);
     if why(detect, view, Screen::Images).clicked() && !screen.is_detect() {
         outbox.act(Action::Go(Screen::Images));
     }
