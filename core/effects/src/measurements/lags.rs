@@ -178,4 +178,19 @@ mod tests {
             assert!(off < 1.05 * of_mean, "{own_rad} {noise_rad}: {off} {of_mean}");
         }
     }
+
+    #[test]
+    fn what_a_servo_gives_way_by_is_told_from_the_way_that_was_left() {
+        for compliance in [0.0, 0.03] {
+            let (mut lags, ..) = lags(1e-3, 1e-3, 3);
+            // The command is ahead to the other side than the load pulls.
+            lags.iter_mut().for_each(|lag| lag.lag_rad -= compliance * lag.follows[OF_TORQUE]);
+            assert!((by_load(&lags) + compliance).abs() < 1e-3, "{}", by_load(&lags));
+        }
+        let (mut lags, ..) = lags(1e-3, 1e-3, 3);
+        lags.iter_mut().for_each(|lag| lag.lag_rad += 0.03 * lag.follows[OF_TORQUE]);
+        assert_eq!(by_load(&lags), 0.0, "nothing gives way against its load");
+        lags.truncate(20);
+        assert_eq!(by_load(&lags), 0.0, "few rows tell nothing");
+    }
 }
