@@ -172,3 +172,39 @@ fn a_round_pad_touches_with_its_lowest_point() {
     let lowest = center - normal * radius_m;
     assert!((arm.tip_m(&ANGLES, &deviation).coords - lowest).norm() < 1e-12);
 }
+
+/// Joints that are driven on by a depth and yield as springs of one stiffness until the tip is no lower than before.
+#[test]
+fn a_finger_that_is_pressed_on_slides_as_its_joints_yield() {
+    let (_, arm) = arm();
+    let (normal, direction, depth_m) = (nalgebra::Vector3::z(), [1.0; 6], 1e-6);
+    let situation = Situation::new(&arm, &ANGLES, &direction, 0.0, &normal);
+    let effects = Effect::all(&arm);
+    let drag = effects.iter().find(|effect| effect.kind == Kind::TouchDrag).expect("a touch has it");
+    let mut deviation = Deviation::none(6);
+    drag.clone().with_shape(Some(2.0)).deviate(&situation, &[depth_m], &mut deviation);
+    let tip = arm.tip_m(&ANGLES, &Deviation::none(6));
+    let moved = |turned: &[f64]| {
+        let angles: Vec<f64> = ANGLES.iter().zip(turned).map(|(angle, turn)| angle + turn).collect();
+        arm.tip_m(&angles, &Deviation::none(6)) - tip
+    };
+    let lifts: Vec<f64> = (0..6)
+        .map(|j| moved(&std::array::from_fn::<f64, 6, _>(|k| if k == j { 1e-6 } else { 0.0 })).z / 1e-6)
+        .collect();
+    // Half of the depth by joints that turn alike, half by those that lower the tip; each to that depth by itself.
+    let alike = 0.5 * depth_m / lifts.iter().sum::<f64>().abs();
+    let lowering: Vec<f64> = lifts.iter().map(|lift| (-lift).max(0.0)).collect();
+    let lowered = lifts.iter().zip(&lowering).map(|(lift, rate)| lift * rate).sum::<f64>().abs();
+    let driven: Vec<f64> = lowering.iter().map(|rate| alike + 0.5 * depth_m * rate / lowered).collect();
+    let along = |shift: nalgebra::Vector3<f64>| nalgebra::Vector3::new(shift.x, shift.y, 0.0);
+    let square: f64 = lifts.iter().map(|lift| lift * lift).sum();
+    let yields: Vec<f64> = lifts.iter().map(|lift| depth_m * lift / square).collect();
+    let expected = along(moved(&driven)) + along(moved(&yields));
+    assert!((moved(&yields).z - depth_m).abs() < 1e-3 * depth_m, "they yield by all of the depth");
+    assert!(deviation.contact_m.z.abs() < 1e-12 && expected.norm() > 0.1 * depth_m);
+    assert!((deviation.contact_m - expected).norm() < 1e-3 * depth_m, "{} {expected}", deviation.contact_m);
+    let unknown = Situation::new(&arm, &ANGLES, &[0.0; 6], 0.0, &normal);
+    let mut none = Deviation::none(6);
+    drag.clone().with_shape(Some(2.0)).deviate(&unknown, &[depth_m], &mut none);
+    assert_eq!(none, Deviation::none(6), "nothing says that it came from a side");
+}

@@ -126,6 +126,8 @@ pub struct Observation {
     /// How far each servo lags in this pose, rad, where repeats tell it from what encoders happen to read: an
     /// expectation of commanded less encoder angle in which this row's own reading has no part.
     pub usual_lag_rad: Option<Vec<f64>>,
+    /// What of that goes with the load on the joint, rad: the servo gave way by it.
+    pub given_way_rad: Option<Vec<f64>>,
     /// Last motion of each joint: −1, 0 (not known) or 1.
     pub direction: Vec<f64>,
     /// Known mass at the palm, kg.
@@ -195,6 +197,7 @@ impl Observation {
             commanded_rad: None,
             encoder_rad: None,
             usual_lag_rad: None,
+            given_way_rad: None,
             direction: vec![],
             payload_kg: 0.0,
             screen_height_m: 0.0,

@@ -1,11 +1,12 @@
 //! Makes blind cases, searches each, scores the answers and prints the table.
 //!
 //! `cargo run --release -p plumbline-blind --example blind_table -- [--generator lean|worn|arms|eyes] [--cases N] [--seed S]
-//! [--only single,pair,…] [--plan plain|rich] [--first N] [--no-show] [--list] [--threads N] [--dump FILE]`
+//! [--only single,pair,…] [--kind touch-drag,…] [--plan plain|rich] [--first N] [--no-show] [--list] [--threads N] [--dump FILE]`
 //!
 //! Cases are kept under `target/blind`, so that a search can be repeated without the physics. Without `--threads` there
 //! are as many as the machine runs at a time; the answers do not depend on it (with held-out rows one thing does: rows are
-//! held out one by one only where that is quick). `--dump` writes a line of JSON about each effect that is listed,
+//! held out one by one only where that is quick). `--kind` picks the cases that were to hide one of these first, of touches
+//! only. `--dump` writes a line of JSON about each effect that is listed,
 //! [`plumbline_blind::names::Line`].
 
 #![allow(clippy::print_stdout)]
@@ -35,13 +36,14 @@ mod told;
 use judge::AnyError;
 
 /// Cases are made anew when the physics changes.
-const PHYSICS: &str = "v9";
+const PHYSICS: &str = "v10";
 
 struct Arguments {
     generator: Source,
     cases: usize,
     seed: u64,
     only: Option<Vec<String>>,
+    kinds: Option<Vec<String>>,
     plan: Option<String>,
     first: usize,
     show: bool,
@@ -56,6 +58,7 @@ fn arguments() -> Result<Arguments, AnyError> {
         cases: 200,
         seed: 1000,
         only: None,
+        kinds: None,
         plan: None,
         first: 0,
         show: true,
@@ -71,6 +74,7 @@ fn arguments() -> Result<Arguments, AnyError> {
             "--cases" => read.cases = value()?.parse()?,
             "--seed" => read.seed = value()?.parse()?,
             "--only" => read.only = Some(value()?.split(',').map(str::to_owned).collect()),
+            "--kind" => read.kinds = Some(value()?.split(',').map(str::to_owned).collect()),
             "--plan" => read.plan = Some(value()?),
             "--first" => read.first = value()?.parse()?,
             "--no-show" => read.show = false,
@@ -96,6 +100,10 @@ fn main() -> Result<(), AnyError> {
         .skip(arguments.first)
         .filter(|order| {
             arguments.only.as_ref().is_none_or(|only| only.contains(&words::word(order.family)))
+                && arguments
+                    .kinds
+                    .as_ref()
+                    .is_none_or(|kinds| order.kind.is_some_and(|kind| kinds.iter().any(|one| one == kind)))
                 && arguments.plan.as_ref().is_none_or(|plan| *plan == words::word(order.plan))
         })
         .collect();
@@ -150,6 +158,8 @@ struct Order<'a> {
     number: usize,
     family: Family,
     plan: Plan,
+    /// What it was to hide first, of touches.
+    kind: Option<&'static str>,
     make: Box<dyn Fn() -> Result<Case, BlindError> + Send + Sync + 'a>,
 }
 
@@ -161,6 +171,7 @@ fn orders<'a>(arguments: &Arguments, bench: &'a Bench, planner: &'a Planner<'a>)
             number: recipe.number,
             family: recipe.family,
             plan: recipe.design.into(),
+            kind: recipe.kind.map(plumbline_blind::secret::Kind::id),
             make: Box::new(move || case::make_or_smaller(bench, planner, &recipe)),
         };
         recipes.into_iter().map(order).collect()
@@ -181,6 +192,7 @@ fn of_wishes<'a, K: Kinds + Send + Sync>(
         number: wish.number,
         family: wish.family,
         plan: wish.plan,
+        kind: None,
         make: Box::new(move || make(&wish)),
     };
     wishes.into_iter().map(order).collect()

@@ -64,7 +64,7 @@ pub enum Kind {
     /// Not in the library: a cable that jumps over an edge at an angle.
     #[strum(serialize = "(cable-step)")]
     CableStep,
-    /// Not in the library: a fingertip that sticks on the glass or slips, by friction.
+    /// Not in the library: a fingertip that slips as it drags, but sticks on dry patches of the glass.
     #[strum(serialize = "(stick-slip)")]
     StickSlip,
     /// Not in the library: an encoder that is disturbed near a place of the table.
@@ -206,6 +206,9 @@ impl Kind {
     }
 }
 
+/// Over how far along the glass it changes by a radian whether a finger sticks: patches of six centimeters, m.
+const PATCH_M: f64 = 0.02;
+
 /// Something that is wrong, where, and by how much.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Secret {
@@ -280,6 +283,12 @@ impl Secret {
             // comes out of the physics.
             _ => BTreeMap::new(),
         }
+    }
+
+    /// Whether a finger sticks on the glass at a place (m): on half of it, in patches.
+    pub fn sticks_at(&self, at_m: [f64; 2]) -> bool {
+        let wave = |k: usize| (at_m[k] / PATCH_M + self.shape[k] * std::f64::consts::TAU).sin();
+        wave(0) * wave(1) > 0.0
     }
 
     /// The turn of an axis that is not square: across it, rad.

@@ -138,12 +138,11 @@ impl<'a> Stage<'a> {
         let sums = sums_per_s(self.physics, &self.secrets, world.servo.len());
         let is_fed = self.physics.servo == Servo::Fed;
         let integrating = self.secrets.iter().any(|s| s.kind == Kind::EarlyLog);
-        let late = self.secrets.iter().filter(|s| matches!(s.kind, Kind::TouchDrag | Kind::StickSlip));
-        let late_steps = (late.map(|s| s.amount.abs()).sum::<f64>() / STEP_S).round() as usize;
         let early = self.secrets.iter().filter(|s| s.kind == Kind::EarlyLog);
         let early_steps = (early.map(|s| s.amount.abs()).sum::<f64>() / STEP_S).round() as usize;
         let mut logged: Vec<Vec<f64>> = vec![];
         let mut first: Option<(Vec<f64>, Vec<f64>, usize)> = None;
+        let mut late_steps = 0;
         let mut at = None;
         let steps = SETTLING + ((start_m + END_M) / DESCENT_M) as usize;
         for step in 0..steps {
@@ -171,6 +170,7 @@ impl<'a> Stage<'a> {
                 }
                 at = Some(place.inverse() * contact);
                 if first.is_none() {
+                    late_steps = (late_s(&self.secrets, contact) / STEP_S).round() as usize;
                     let commanded = if integrating || !is_fed { plan } else { world.data.ctrl().to_vec() };
                     let motors = if early_steps > 0 {
                         logged[logged.len().saturating_sub(1 + early_steps)].clone()
@@ -254,6 +254,17 @@ impl<'a> Stage<'a> {
         }
         read
     }
+}
+
+/// How long the finger slides on until the panel answers, when it met the glass there (robot frame, m), s. A finger that sticks
+/// on dry patches and slips between them is told where it touched on the former.
+fn late_s(secrets: &[Secret], contact: Point3<f64>) -> f64 {
+    let late = |secret: &Secret| match secret.kind {
+        Kind::TouchDrag => secret.amount.abs(),
+        Kind::StickSlip if !secret.sticks_at([contact.x, contact.y]) => secret.amount.abs(),
+        _ => 0.0,
+    };
+    secrets.iter().map(late).sum()
 }
 
 /// How fast each servo sums up what is left, 1/s; one that gives way or sticks does not.

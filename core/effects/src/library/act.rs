@@ -96,6 +96,12 @@ impl Situation<'_> {
         commanded.get(j).zip(encoder.get(j)).map_or(0.0, |(c, e)| c - e)
     }
 
+    /// What of that the servo gave way by under its load: no way that was left to go.
+    pub(super) fn given_way_rad(&self, j: usize) -> f64 {
+        let given_way = self.row.and_then(|row| row.given_way_rad.as_ref());
+        given_way.and_then(|given_way| given_way.get(j)).copied().unwrap_or_default()
+    }
+
     /// How fast a joint arrived: by the side of its approach where that is known, else by the way
     /// from the last command.
     pub(super) fn speed_rad_s(&self, j: usize) -> f64 {

@@ -21,7 +21,7 @@ pub struct Effect {
     /// What it is and where, for people.
     pub title: String,
     /// What does not enter the prediction linearly, by kind: periods per turn (`None`: one), a
-    /// time constant (s), a moment (s), a torque (N m), which of two things (`None`: the first). An
+    /// time constant (s), a moment (s), a torque (N m), which of some things (`None`: the first, 1: the second). An
     /// eye that turns is constant without it and grows with it: see [`Self::growth`]. `None`
     /// where there is no such thing.
     pub shape: Option<f64>,
@@ -162,6 +162,11 @@ impl Effect {
         !self.members.is_empty()
     }
 
+    /// Which of the things that its kind may be, from 0 on.
+    pub(super) fn choice(&self) -> usize {
+        self.shape.map_or(0, |shape| shape as usize)
+    }
+
     /// The law of what grows. The shape holds it: whole seconds of the time constant, and its second number in
     /// thousandths of its seconds after the point (240.06: 240 s, 60 s); negative where that number is a second
     /// time constant and no delay.
@@ -180,7 +185,7 @@ impl Effect {
             | Shape::Teeth
             | Shape::Limit
             | Shape::Moment
-            | Shape::Either(_) => None,
+            | Shape::OneOf(_) => None,
         }
     }
 

@@ -111,8 +111,8 @@ pub(crate) enum Shape {
     Moment,
     /// `None`: constant. Else it grows, see [`Effect::growth`], and has these parameters.
     Growth(&'static [Parameter]),
-    /// `None`: the first of two things; 1: the second.
-    Either([&'static str; 2]),
+    /// `None`: the first of some things; 1: the second, and so on.
+    OneOf(&'static [&'static str]),
 }
 
 /// What effects of a kind do.
@@ -184,6 +184,11 @@ impl Turning<'_> {
     /// Commanded less encoder angle.
     pub fn lag_rad(&self) -> f64 {
         self.situation.lag_rad(self.joint)
+    }
+
+    /// Commanded less encoder angle, without what the servo gave way by under its load.
+    pub fn way_left_rad(&self) -> f64 {
+        self.lag_rad() - self.situation.given_way_rad(self.joint)
     }
 
     pub fn t_secs(&self) -> Option<f64> {

@@ -125,7 +125,10 @@ impl Known {
                 [vec![effect], grown].concat()
             }
             Shape::Growth(_) => vec![effect],
-            Shape::Either(_) => vec![effect.clone(), effect.with_shape(Some(1.0))],
+            Shape::OneOf(choices) => {
+                let others = (1..choices.len()).map(|choice| effect.clone().with_shape(Some(choice as f64)));
+                std::iter::once(effect.clone()).chain(others).collect()
+            }
         }
     }
 }

@@ -13,6 +13,7 @@ mod kind;
 mod kinds;
 mod known;
 mod present;
+mod press;
 mod report;
 mod situation;
 mod surface;

@@ -21,7 +21,7 @@ pub struct Reported {
     pub low: f64,
     /// Upper end.
     pub high: f64,
-    /// What a number cannot say (`from_joint`: the name of a joint; `which` of two things); the value is then
+    /// What a number cannot say (`from_joint`: the name of a joint; `which` of some things); the value is then
     /// zero.
     pub text: Option<String>,
 }
@@ -66,17 +66,11 @@ impl Effect {
         vec![self.shape("torque_nm"), fit.plain(0, self.parameters()[0].name)]
     }
 
-    /// Of one of two things, by its shape.
-    pub(super) fn either(&self, fit: &Fit<'_>) -> Vec<Reported> {
-        let Shape::Either([first, second]) = self.kind.entry().shape else { return self.plain(fit) };
-        let which = if self.shape.is_some() { second } else { first };
-        let choice = Reported {
-            name: "which".to_owned(),
-            value: 0.0,
-            low: 0.0,
-            high: 0.0,
-            text: Some(which.to_owned()),
-        };
+    /// Of one of several things, by its shape.
+    pub(super) fn one_of(&self, fit: &Fit<'_>) -> Vec<Reported> {
+        let Shape::OneOf(choices) = self.kind.entry().shape else { return self.plain(fit) };
+        let text = choices.get(self.choice()).map(|which| (*which).to_owned());
+        let choice = Reported { name: "which".to_owned(), value: 0.0, low: 0.0, high: 0.0, text };
         vec![fit.plain(0, self.parameters()[0].name), choice]
     }
 
@@ -118,7 +112,7 @@ impl Effect {
                 };
                 vec![known("time_constant_s", growth.time_constant_s), second]
             }),
-            Shape::None | Shape::OnceOrTwice | Shape::Teeth | Shape::Limit | Shape::Either(_) => vec![],
+            Shape::None | Shape::OnceOrTwice | Shape::Teeth | Shape::Limit | Shape::OneOf(_) => vec![],
         }
     }
 

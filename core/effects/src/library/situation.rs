@@ -2,11 +2,9 @@
 
 use nalgebra::{Isometry3, Point3, Vector3};
 
+use super::press::Press;
 use crate::arm::{Arm, Frames, Part};
 use crate::observation::Observation;
-
-/// Along the glass per way down, at most: nobody comes in flatter, and joints do not turn quite alike.
-const FLATTEST: f64 = 3.0;
 
 /// All that effects depend on, in one pose of the arm on the screen.
 #[derive(Clone, Debug)]
@@ -28,6 +26,9 @@ pub struct Situation<'a> {
     pub(super) sweep: Vector3<f64>,
     /// The same, as long as the way along the glass per way down.
     pub(super) slope: Vector3<f64>,
+    /// Where the tip slides along the glass per meter that the joints are driven on against it, robot frame; zero if no
+    /// direction is known.
+    pub(super) pressed: Vector3<f64>,
     /// Where the nominal joints are.
     pub(super) frames: Frames,
     /// Moment of gravity about each joint's origin, robot frame.
@@ -70,7 +71,8 @@ impl<'a> Situation<'a> {
             })
             .collect();
         let tip = Point3::from(frames.robot_from_tip.translation.vector);
-        let (sweep, slope) = sweep(arm, &frames, direction, tip, normal);
+        let press = Press::of(arm, &frames, direction, tip, normal);
+        let slope = press.alike();
         let lean_nm = moments.first().map_or(Vector3::zeros(), |m| Vector3::new(m.x, m.y, 0.0));
         Self {
             arm,
@@ -81,8 +83,9 @@ impl<'a> Situation<'a> {
             sideways_nm,
             lean_nm,
             roll: roll(arm, &frames.robot_from_joint, normal),
-            sweep,
+            sweep: slope.try_normalize(0.0).unwrap_or_default(),
             slope,
+            pressed: press.pressed(),
             weights_n: arm.weights_beyond_n(payload_kg),
             moments_nm: moments,
             normal: *normal,
@@ -113,29 +116,4 @@ impl<'a> Situation<'a> {
 fn roll(arm: &Arm, joints: &[Isometry3<f64>], normal: &Vector3<f64>) -> Vector3<f64> {
     let Some(last) = joints.last() else { return Vector3::zeros() };
     -(last.rotation * arm.finger.into_inner() + normal)
-}
-
-/// Where the finger goes along the glass when every joint turns alike: the direction, and with the way along the
-/// glass per way down as its length.
-fn sweep(
-    arm: &Arm,
-    frames: &Frames,
-    direction: &[f64],
-    tip: Point3<f64>,
-    normal: &Vector3<f64>,
-) -> (Vector3<f64>, Vector3<f64>) {
-    let velocity: Vector3<f64> = frames
-        .robot_from_joint
-        .iter()
-        .zip(&frames.axes)
-        .zip(direction)
-        .zip(&arm.parts)
-        .filter(|(_, part)| !part.slides)
-        .map(|(turning, _)| turning)
-        .map(|((joint, axis), sign)| axis.cross(&(tip.coords - joint.translation.vector)) * *sign)
-        .sum();
-    let down = normal.dot(&velocity);
-    let along = velocity - normal * down;
-    let Some(unit) = along.try_normalize(1e-6) else { return (Vector3::zeros(), Vector3::zeros()) };
-    (unit, unit * (along.norm() / down.abs().max(1e-9)).min(FLATTEST))
 }

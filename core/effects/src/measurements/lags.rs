@@ -15,6 +15,11 @@ use crate::library::Situation;
 
 /// What a servo's lag may follow: nothing, direction, torque, angle, and angle by direction.
 const COLUMNS: usize = 5;
+/// All of them; the place of the torque among them; and what a lag is held against to tell what goes with the load, which
+/// stands last.
+const ALL: [usize; COLUMNS] = [0, 1, 2, 3, 4];
+const OF_TORQUE: usize = 2;
+const BESIDE_LOAD: [usize; 4] = [0, 1, 4, OF_TORQUE];
 /// Fewer rows for each column follow nothing.
 const ROWS_PER_COLUMN: usize = 8;
 /// Keeps columns that do not vary from being solved for.
@@ -31,9 +36,9 @@ struct Lag {
 /// Sum and number of a cell's lags.
 type Cells = BTreeMap<usize, (f64, f64)>;
 
-/// Fills in the usual lag of every row that has repeats.
+/// Fills in the usual lag of every row that has repeats, and what of it goes with the load.
 pub(super) fn complete(rows: &mut [Observation], apparatuses: &[Apparatus]) {
-    rows.iter_mut().for_each(|row| row.usual_lag_rad = None);
+    rows.iter_mut().for_each(|row| (row.usual_lag_rad, row.given_way_rad) = (None, None));
     for (session, apparatus) in apparatuses.iter().enumerate() {
         let Some(arm) = &apparatus.arm else { continue };
         let mut counts: BTreeMap<usize, usize> = BTreeMap::new();
@@ -61,8 +66,13 @@ pub(super) fn complete(rows: &mut [Observation], apparatuses: &[Apparatus]) {
                     Some(Lag { row: i, cell: row.cell, follows, lag_rad: *row.lag_rad()?.get(j)? })
                 })
                 .collect();
+            let by_load = by_load(&lags);
             for (i, lag_rad) in usual(&lags) {
                 rows[i].usual_lag_rad.get_or_insert_with(|| vec![0.0; arm.len()])[j] = lag_rad;
+            }
+            for lag in &lags {
+                let given_way = rows[lag.row].given_way_rad.get_or_insert_with(|| vec![0.0; arm.len()]);
+                given_way[j] = by_load * lag.follows[OF_TORQUE];
             }
         }
     }
@@ -70,7 +80,10 @@ pub(super) fn complete(rows: &mut [Observation], apparatuses: &[Apparatus]) {
 
 /// The expected lag of each row of one joint.
 fn usual(lags: &[Lag]) -> Vec<(usize, f64)> {
-    let follows = follow(lags);
+    let fit = fit(lags, if is_few(lags) { &ALL[..1] } else { &ALL });
+    let of_fit =
+        |lag: &Lag| ALL.iter().zip(&fit).map(|(&column, fit)| lag.follows[column] * fit).sum::<f64>();
+    let follows: Vec<f64> = lags.iter().map(of_fit).collect();
     let mut cells: Cells = BTreeMap::new();
     for (lag, follows) in lags.iter().zip(&follows) {
         let (sum, count) = cells.entry(lag.cell).or_default();
@@ -98,14 +111,25 @@ fn usual(lags: &[Lag]) -> Vec<(usize, f64)> {
     lags.iter().zip(&follows).map(expected).collect()
 }
 
-/// What the lag of each row follows from, by least squares.
-fn follow(lags: &[Lag]) -> Vec<f64> {
-    let columns = if lags.len() < ROWS_PER_COLUMN * COLUMNS { 1 } else { COLUMNS };
-    let design = DMatrix::from_fn(lags.len(), columns, |r, c| lags[r].follows[c]);
+fn is_few(lags: &[Lag]) -> bool {
+    lags.len() < ROWS_PER_COLUMN * COLUMNS
+}
+
+/// How the lag follows some of what it may, by least squares: one number per column.
+fn fit(lags: &[Lag], columns: &[usize]) -> Vec<f64> {
+    let design = DMatrix::from_fn(lags.len(), columns.len(), |r, c| lags[r].follows[columns[c]]);
     let values = DVector::from_iterator(lags.len(), lags.iter().map(|lag| lag.lag_rad));
-    let normal = design.tr_mul(&design) + DMatrix::identity(columns, columns) * RIDGE;
+    let normal = design.tr_mul(&design) + DMatrix::identity(columns.len(), columns.len()) * RIDGE;
     let fit = Cholesky::new(normal).map(|normal| normal.solve(&design.tr_mul(&values)));
-    fit.map_or_else(|| vec![0.0; lags.len()], |fit| (design * fit).iter().copied().collect())
+    fit.map_or_else(|| vec![0.0; columns.len()], |fit| fit.iter().copied().collect())
+}
+
+/// Lag per torque, rad/N m; nothing where rows are few. Nothing of a servo goes with the angle alone, and the angle goes with
+/// the torque, so it has no part in this. A servo gives way to where its load pulls, so that its command is ahead on the
+/// other side; what goes the other way is something else.
+fn by_load(lags: &[Lag]) -> f64 {
+    let known = (!is_few(lags)).then(|| fit(lags, &BESIDE_LOAD));
+    known.and_then(|fit| fit.last().copied()).unwrap_or_default().min(0.0)
 }
 
 #[cfg(test)]
@@ -153,5 +177,20 @@ mod tests {
             // No worse than the mean of the two others.
             assert!(off < 1.05 * of_mean, "{own_rad} {noise_rad}: {off} {of_mean}");
         }
+    }
+
+    #[test]
+    fn what_a_servo_gives_way_by_is_told_from_the_way_that_was_left() {
+        for compliance in [0.0, 0.03] {
+            let (mut lags, ..) = lags(1e-3, 1e-3, 3);
+            // The command is ahead to the other side than the load pulls.
+            lags.iter_mut().for_each(|lag| lag.lag_rad -= compliance * lag.follows[OF_TORQUE]);
+            assert!((by_load(&lags) + compliance).abs() < 1e-3, "{}", by_load(&lags));
+        }
+        let (mut lags, ..) = lags(1e-3, 1e-3, 3);
+        lags.iter_mut().for_each(|lag| lag.lag_rad += 0.03 * lag.follows[OF_TORQUE]);
+        assert_eq!(by_load(&lags), 0.0, "nothing gives way against its load");
+        lags.truncate(20);
+        assert_eq!(by_load(&lags), 0.0, "few rows tell nothing");
     }
 }

@@ -141,7 +141,7 @@ impl Menu<'_> {
                 self.with(row, |_| ()),
                 self.with(row, |row| {
                     row.commanded_rad.clone_from(&row.encoder_rad);
-                    row.usual_lag_rad = None;
+                    (row.usual_lag_rad, row.given_way_rad) = (None, None);
                 }),
             ])
         };

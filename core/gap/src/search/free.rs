@@ -24,7 +24,12 @@ pub(super) struct Rival {
     pub of: String,
     /// On what ("angle of the elbow").
     pub on: String,
+    /// Where it is a joint that gives way differently as it warms: its site.
+    pub softens: Option<String>,
 }
+
+/// How much a joint gives way as it warms goes smoothly from cold to warm: what it always gives way, and these.
+const FUNCTIONS_OF_WARMTH: usize = 3;
 
 /// Of a joint on the angle of another one: what one pulls at another, by a cable say, goes smoothly.
 const FUNCTIONS_OF_ANOTHER: usize = 3;
@@ -47,19 +52,21 @@ pub(super) fn rivals(
 ) -> (Vec<Rival>, Vec<Block>, DMatrix<f64>) {
     let mut rivals = vec![];
     let mut columns: Vec<Vec<Vec<f64>>> = vec![];
-    let mut add = |of: String, moved: &Moved, covariate: usize, sided: Option<usize>| {
-        let base = base(measurements, linear, moved);
-        let value = |row: usize| covariates.values[row][covariate];
-        let Some(own) = functions(linear, covariates, &base, &value, sided, FUNCTIONS) else { return };
-        let (name, _) = &covariates.names[covariate];
-        let on = match sided.and_then(|sided| covariates.names.get(sided)) {
-            Some((with, _)) if with.starts_with("direction") => format!("{name} and its direction"),
-            Some((with, _)) => format!("{name} and {with}"),
-            None => name.clone(),
+    let mut add =
+        |of: String, moved: &Moved, covariate: usize, sided: Option<usize>, softens: Option<&str>| {
+            let base = base(measurements, linear, moved);
+            let value = |row: usize| covariates.values[row][covariate];
+            let count = if softens.is_some() { FUNCTIONS_OF_WARMTH } else { FUNCTIONS };
+            let Some(own) = functions(linear, covariates, &base, &value, sided, count) else { return };
+            let (name, _) = &covariates.names[covariate];
+            let on = match sided.and_then(|sided| covariates.names.get(sided)) {
+                Some((with, _)) if with.starts_with("direction") => format!("{name} and its direction"),
+                Some((with, _)) => format!("{name} and {with}"),
+                None => name.clone(),
+            };
+            rivals.push(Rival { of, on, softens: softens.map(str::to_owned) });
+            columns.push(own);
         };
-        rivals.push(Rival { of, on });
-        columns.push(own);
-    };
     let find = |name: &str| covariates.names.iter().position(|(known, _)| known == name);
     for (effect, block) in library.effects.iter().zip(&library.blocks) {
         let neck = effect.kind == Kind::HeadJoint;
@@ -73,21 +80,21 @@ pub(super) fn rivals(
         let direction = find(&format!("direction of {title}"));
         for what in ["angle", "torque", "temperature"] {
             if let Some(covariate) = find(&format!("{what} of {title}")) {
-                add(of.clone(), &moved, covariate, None);
+                add(of.clone(), &moved, covariate, None, None);
             }
         }
         if let (Some(angle), Some(direction)) = (angle, direction) {
-            add(of.clone(), &moved, angle, Some(direction));
+            add(of.clone(), &moved, angle, Some(direction), None);
         }
         let time = find("time");
         if let Some(time) = time {
-            add(of.clone(), &moved, time, None);
+            add(of.clone(), &moved, time, None, None);
         }
         // A joint that gives way differently as it warms.
         let torque = find(&format!("torque of {title}"));
         let warmth = find(&format!("temperature of {title}")).or(time);
         if let (Some(torque), Some(warmth)) = (torque, warmth) {
-            add(of.clone(), &moved, warmth, Some(torque));
+            add(of.clone(), &moved, warmth, Some(torque), Some(&effect.site));
         }
     }
     for (what, on) in [
@@ -104,7 +111,7 @@ pub(super) fn rivals(
             for on in on {
                 if let Some(covariate) = find(on) {
                     let of = super::linear::coordinate_name(what, coordinate).to_owned();
-                    add(of, &Moved::Coordinate(what, coordinate), covariate, None);
+                    add(of, &Moved::Coordinate(what, coordinate), covariate, None, None);
                 }
             }
         }
@@ -167,15 +174,16 @@ fn of_other_joints(
         }
         let title = effect.title.split(':').next().unwrap_or_default();
         let Some(own) = titles.iter().position(|known| *known == title) else { continue };
+        let of_turn = |on: String| Rival { of: format!("turn of {title}"), on, softens: None };
         let base = base(measurements, linear, &Moved::Column(linear.gauge + block.start));
         let (columns, among) = steps(measurements, linear, &base, own);
         for column in columns {
-            let rival = Rival { of: format!("turn of {title}"), on: format!("angle of {title}, in a step") };
+            let rival = of_turn(format!("angle of {title}, in a step"));
             found.push((rival, vec![column.into_iter().map(|value| LARGE * value).collect()], among));
         }
         let mut add = |on: String, value: &dyn Fn(usize) -> Option<f64>, count: usize, among: usize| {
             if let Some(columns) = functions(linear, covariates, &base, value, None, count) {
-                found.push((Rival { of: format!("turn of {title}"), on }, columns, among));
+                found.push((of_turn(on), columns, among));
             }
         };
         let way = |row: usize| came[row].as_ref().and_then(|turned| turned.get(own)).copied();

@@ -78,14 +78,23 @@ pub(super) static TOUCH_DRAG: Entry = Entry {
     parameters: &[parameter("drag_m", 0.0025)],
     sliding: &[],
     site: Site::Contact,
-    // At one speed along the glass, or at one speed down: then the way along it goes with how flat the finger comes in.
-    shape: Shape::Either(["as far everywhere", "farther where the finger comes in flatter"]),
+    // At one speed along the glass; at one speed down: then the way along it goes with how flat the finger comes in; or
+    // pressed on for one time, so that the joints give way as well.
+    shape: Shape::OneOf(&[
+        "same way everywhere",
+        "way that grows the flatter the finger comes in",
+        "way that the joints yield while the finger presses",
+    ]),
     shown: |rows| rows.touches && rows.direction,
     act: Act::Arm(|effect, situation, values, deviation| {
-        let way = if effect.shape.is_some() { situation.slope } else { situation.sweep };
+        let way = match effect.choice() {
+            0 => situation.sweep,
+            1 => situation.slope,
+            _ => situation.pressed,
+        };
         deviation.contact_m += way * values[0];
     }),
-    reported: Effect::either,
+    reported: Effect::one_of,
     is: &[Is::Planned, Is::OneSided],
 };
 

@@ -97,13 +97,13 @@ pub(super) static FOCAL_OR_BASELINE: Entry = Entry {
     parameters: &[parameter("scale", 0.05)],
     sliding: &[],
     site: Site::OfEyes(EyeSite::Both),
-    shape: Shape::Either(["focal length", "distance of the eyes"]),
+    shape: Shape::OneOf(&["focal length", "distance of the eyes"]),
     shown: |rows| rows.eyes,
     act: Act::Eyes(|effect, _, values, deviation| match effect.shape {
         None => deviation.focal_scale += values[0],
         Some(_) => deviation.baseline_scale += values[0],
     }),
-    reported: Effect::either,
+    reported: Effect::one_of,
     is: &[],
 };
 

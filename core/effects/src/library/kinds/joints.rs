@@ -110,10 +110,11 @@ pub(super) static EARLY_LOG: Entry = Entry {
     parameters: &[parameter("fraction", 0.5)],
     sliding: &[],
     site: Site::JointOrAllAlike,
-    shape: Shape::None,
+    // A servo that gives way under its load stays behind its command where it has arrived, too.
+    shape: Shape::OneOf(&["whole lag", "lag beyond what gives way under load"]),
     shown: |rows| rows.lag,
-    act: Act::Turn(|at| at.value() * at.lag_rad()),
-    reported: Effect::plain,
+    act: Act::Turn(|at| at.value() * if at.effect.choice() == 0 { at.lag_rad() } else { at.way_left_rad() }),
+    reported: Effect::one_of,
     is: &[],
 };
 
