@@ -34,8 +34,9 @@ const RIVAL_CLOSES: f64 = 0.2;
 const RIVAL_P: f64 = 0.02;
 /// Effects that do more to the rows than this many times the whole gap cancel each other: no name.
 const CANCELLING: f64 = 1.5;
-/// Eyes that each turn their own way with their heat: what they do together is less than what each does.
-const CANCELLING_GROWN: f64 = 4.0;
+/// Of eyes, which turn their own way each: what they do together is less than what each does, and optics hold so exactly
+/// that two of them do not make up for what a formula leaves.
+const CANCELLING_OF_EYES: f64 = 4.0;
 /// Beyond this many usual sizes a fit is at its bound.
 const BOUND: f64 = 3.0;
 /// One name stands for its class from this probability on.
@@ -166,8 +167,8 @@ impl Evidence<'_> {
             let (own, covariance) = &values[place];
             let size = sizes[place];
             let least = noise * if size >= largest { SMALLEST_FIRST } else { SMALLEST };
-            let grows = self.library.effects[block].growth().is_some();
-            let cancelling = if grows { CANCELLING_GROWN } else { CANCELLING };
+            let of_eyes = self.library.effects[block].kind.is_of_eyes();
+            let cancelling = if of_eyes { CANCELLING_OF_EYES } else { CANCELLING };
             if size < least {
                 continue;
             }
