@@ -243,11 +243,9 @@ pub(crate) const VISIBLE: f64 = 0.89;
 impl Naming {
     fn count(&mut self, hidden: &[Hidden], verdict: &Verdict) {
         let names: Vec<String> = hidden.iter().map(|hidden| plain(&hidden.named())).collect();
-        let found = |right: &dyn Fn(&Found, &str) -> bool| {
-            verdict.names() && names.iter().all(|name| verdict.effects.iter().any(|found| right(found, name)))
-        };
-        self.class.count(found(&|found, name| found.may_be(name)));
-        self.exact.count(found(&|found, name| found.name() == name));
+        let is_named = |name: &String| verdict.effects.iter().any(|found| found.name() == *name);
+        self.class.count(verdict.names() && names.iter().all(|name| verdict.tells(name, &names)));
+        self.exact.count(verdict.names() && names.iter().all(is_named));
     }
 }
 
@@ -359,6 +357,19 @@ mod tests {
             &[("joint-zero", "r_elbow_y", 0.9, &[]), ("finger-roll", "tip", 0.9, &[])];
         score.count(&truth, &verdict("named", both));
         assert_eq!(score.several.values().next().expect("pairs").class, Share { hits: 1, of: 2 });
+    }
+
+    #[test]
+    fn what_may_be_beside_a_right_name_is_found_and_beside_a_wrong_one_is_not() {
+        let truth = answer(Family::Pair, &[("image-shift", "right", 2.0), ("eye-yaw", "right", 2.0)], &[]);
+        let found = |id: &str| {
+            let mut verdict = verdict("named", &[(id, "right", 0.9, &[])]);
+            verdict.effects[0].beside = vec!["eye-yaw@right".to_owned(), "image-shift@right".to_owned()];
+            let mut score = Score::default();
+            score.count(&truth, &verdict);
+            score.several.values().next().expect("pairs").class.hits
+        };
+        assert_eq!((found("image-shift"), found("eye-roll")), (1, 0));
     }
 
     #[test]

@@ -41,6 +41,9 @@ pub struct Found {
     /// Every `id@site` that it could be, too.
     #[serde(default)]
     pub class: Vec<String>,
+    /// Every `id@site` that may be there beside it, as a part of it.
+    #[serde(default)]
+    pub beside: Vec<String>,
 }
 
 impl Found {
@@ -54,6 +57,15 @@ impl Found {
 }
 
 impl Verdict {
+    /// Whether something that is hidden has a name, is in the class of one, or is told to be, perhaps, beside a name that
+    /// is itself of something hidden.
+    pub(crate) fn tells(&self, name: &str, hidden: &[String]) -> bool {
+        let is_beside = |found: &Found| {
+            hidden.contains(&found.name()) && found.beside.iter().any(|member| plain(member) == name)
+        };
+        self.effects.iter().any(|found| found.may_be(name) || is_beside(found))
+    }
+
     /// Whether it gives names.
     pub fn names(&self) -> bool {
         matches!(self.verdict.as_str(), "named" | "class")
