@@ -39,6 +39,8 @@ const CANCELLING: f64 = 1.5;
 /// Of eyes, which turn their own way each: what they do together is less than what each does, and optics hold so exactly
 /// that two of them do not make up for what a formula leaves.
 const CANCELLING_OF_EYES: f64 = 4.0;
+/// So many effects of the eyes that each do more than the whole gap are no coincidence.
+const MANY_CANCELLING: usize = 3;
 /// Beyond this many usual sizes a fit is at its bound.
 const BOUND: f64 = 3.0;
 /// One name stands for its class from this probability on.
@@ -135,6 +137,7 @@ impl Evidence<'_> {
         let (blocks, effects): (Vec<usize>, Vec<NamedEffect>) = found.into_iter().unzip();
         let nameless = effects.is_empty() && self.p_bare() < VETO_P && self.look.gap() > NO_DIRT;
         let unknown = unknown.max(if nameless { 0.6 } else { 0.0 });
+        let unknown = unknown.max(if self.cancel_each_other(&top) { 0.95 } else { 0.0 });
         let verdict = if unknown > 0.5 {
             Verdict::NotInLibrary
         } else if effects.is_empty() {
@@ -194,6 +197,16 @@ impl Evidence<'_> {
             }
         }
         (found, rest)
+    }
+
+    /// Whether so many effects of the eyes do more than the whole gap each that together they stand for something else: that
+    /// two nearly cancel each other is a coincidence, that several do is what a fit makes of what no name stands for.
+    fn cancel_each_other(&self, set: &[usize]) -> bool {
+        let is_large = |(&block, (own, _)): (&usize, &(Vec<f64>, DMatrix<f64>))| {
+            let of_eyes = self.library.effects[block].kind.is_of_eyes();
+            of_eyes && self.look.does(block, own) > self.look.gap()
+        };
+        set.iter().zip(&self.values(set)).filter(|one| is_large(*one)).count() >= MANY_CANCELLING
     }
 
     /// Names of the most probable set, of those that cannot be told from the first one, that gives all of these names and
