@@ -214,6 +214,10 @@ pub struct NamedEffect {
     pub size_m: f64,
     /// Every name that the data cannot tell from this one, as `id@site`, itself first.
     pub class: Vec<ClassMember>,
+    /// Names that act in these rows as a part of this effect does: they may be there beside it, with as much less of it.
+    /// `probability` is that of each being there.
+    #[serde(default)]
+    pub beside: Vec<ClassMember>,
     /// What experiment would tell them apart; `None` where the class has one member.
     pub split_by: Option<String>,
     /// The best name outside of the class, and how much less probable it is (log₁₀ of the odds

@@ -1,6 +1,6 @@
 //! The answer in a sentence or two, for someone in the lab.
 
-use crate::finding::{Finding, FloorSource, FoundParameter, NamedEffect, ShownUnit, Verdict};
+use crate::finding::{ClassMember, Finding, FloorSource, FoundParameter, NamedEffect, ShownUnit, Verdict};
 use crate::watched::WATCHED;
 use plumbline_model::{counted, number, parameter_units, parameter_words};
 
@@ -165,17 +165,29 @@ fn effect(effect: &NamedEffect) -> String {
     parameters.extend(rest(any_told, more, zero.len()));
     let sized = if parameters.is_empty() { String::new() } else { format!(": {}", parameters.join(", ")) };
     let others: Vec<&str> = effect.class.iter().skip(1).map(|member| member.title.as_str()).take(3).collect();
+    let beside = beside(&effect.beside);
     let family = if is_family(effect) { " (no single one explains it)" } else { "" };
     let title = format!("{}{family}", capital(&effect.title));
     if let Some(why) = &effect.not_addable {
         return format!("{title}{sized}; {why}.");
     }
     if others.is_empty() {
-        return format!("{title}{sized}.");
+        return format!("{title}{sized}.{beside}");
     }
     let split =
         effect.split_by.as_ref().map_or(String::new(), |split| format!(" To tell them apart: {split}."));
-    format!("{title}{sized}; the data cannot tell it from: {}.{split}", others.join("; "))
+    format!("{title}{sized}; the data cannot tell it from: {}.{split}{beside}", others.join("; "))
+}
+
+/// What a part of an effect may be instead.
+fn beside(members: &[ClassMember]) -> String {
+    let titles: Vec<&str> = members.iter().map(|member| member.title.as_str()).take(3).collect();
+    match titles.is_empty() {
+        true => String::new(),
+        false => {
+            format!(" A part of it may be another effect, which acts alike here: {}.", titles.join("; "))
+        }
+    }
 }
 
 /// A parameter in the units of the lab, as far as its name says its unit.
@@ -249,6 +261,19 @@ mod tests {
         }
         // A number without a unit of its own is on the page, not in the sentence.
         assert_eq!(told("order", 2.0, 2.0, 2.0), None);
+    }
+
+    #[test]
+    fn what_may_be_a_part_of_an_effect_is_told_after_it() {
+        let member = |title: &str| ClassMember {
+            id: String::new(),
+            site: String::new(),
+            title: title.to_owned(),
+            probability: 0.1,
+        };
+        assert_eq!(beside(&[]), "");
+        let told = beside(&[member("right eye turned sideways"), member("right eye rolled")]);
+        assert!(told.ends_with(": right eye turned sideways; right eye rolled."), "{told}");
     }
 
     #[test]

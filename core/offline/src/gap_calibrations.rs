@@ -63,6 +63,7 @@ mod tests {
             size_sigmas: 9.0,
             size_m: 0.01,
             class: vec![],
+            beside: vec![],
             split_by: None,
             runner_up: None,
             not_addable: None,

@@ -226,7 +226,9 @@ fn list(answer: &Answer, verdict: Result<&Verdict, &String>) {
                 .map(|f| {
                     let others: Vec<&str> = f.class.iter().skip(1).map(String::as_str).collect();
                     let size = f.size_sigmas.map_or_else(String::new, |size| format!(" {size:.1}σ"));
-                    format!("{}@{} {:.2}{size} {others:?}", f.id, f.site, f.probability)
+                    let beside =
+                        if f.beside.is_empty() { String::new() } else { format!(" beside {:?}", f.beside) };
+                    format!("{}@{} {:.2}{size} {others:?}{beside}", f.id, f.site, f.probability)
                 })
                 .collect();
             format!("{} {} ({:.1} s)", verdict.verdict, names.join(", "), verdict.seconds.unwrap_or(f64::NAN))

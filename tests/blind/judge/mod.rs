@@ -6,7 +6,7 @@ use std::path::Path;
 
 use plumbline_blind::verdict::{Found, Verdict};
 use plumbline_effects::Measurements;
-use plumbline_gap::finding::Finding;
+use plumbline_gap::finding::{ClassMember, Finding};
 use plumbline_gap::{Options, find};
 use plumbline_model::robot::Rig;
 use plumbline_model::session::RigReference;
@@ -43,6 +43,7 @@ pub fn search_all(folders: &[impl AsRef<Path>], options: &Options) -> Result<Fin
 
 /// A finding as the command line prints it, as far as it is judged.
 pub fn verdict(finding: &Finding) -> Verdict {
+    let named = |member: &ClassMember| format!("{}@{}", member.id, member.site);
     let effects = finding.effects.iter().map(|effect| Found {
         id: effect.id.clone(),
         site: effect.site.clone(),
@@ -53,7 +54,8 @@ pub fn verdict(finding: &Finding) -> Verdict {
             .map(|p| (p.name.clone(), json!({"value": p.value, "low": p.low, "high": p.high})))
             .collect(),
         size_sigmas: Some(effect.size_sigmas),
-        class: effect.class.iter().map(|member| format!("{}@{}", member.id, member.site)).collect(),
+        class: effect.class.iter().map(named).collect(),
+        beside: effect.beside.iter().map(named).collect(),
     });
     let word = serde_json::to_value(finding.verdict).ok();
     Verdict {

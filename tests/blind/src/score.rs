@@ -246,6 +246,7 @@ impl Naming {
         let found = |right: &dyn Fn(&Found, &str) -> bool| {
             verdict.names() && names.iter().all(|name| verdict.effects.iter().any(|found| right(found, name)))
         };
+        // What is only told to be, perhaps, beside a name (`beside`) is not found.
         self.class.count(found(&|found, name| found.may_be(name)));
         self.exact.count(found(&|found, name| found.name() == name));
     }
@@ -359,6 +360,16 @@ mod tests {
             &[("joint-zero", "r_elbow_y", 0.9, &[]), ("finger-roll", "tip", 0.9, &[])];
         score.count(&truth, &verdict("named", both));
         assert_eq!(score.several.values().next().expect("pairs").class, Share { hits: 1, of: 2 });
+    }
+
+    #[test]
+    fn what_is_told_beside_a_name_is_not_found_by_it() {
+        let truth = answer(Family::Pair, &[("image-shift", "right", 2.0), ("eye-yaw", "right", 2.0)], &[]);
+        let mut verdict = verdict("named", &[("image-shift", "right", 0.9, &[])]);
+        verdict.effects[0].beside = vec!["eye-yaw@right".to_owned()];
+        let mut score = Score::default();
+        score.count(&truth, &verdict);
+        assert_eq!(score.several.values().next().expect("pairs").class, Share { hits: 0, of: 1 });
     }
 
     #[test]

@@ -41,6 +41,9 @@ pub struct Found {
     /// Every `id@site` that it could be, too.
     #[serde(default)]
     pub class: Vec<String>,
+    /// Every `id@site` that may be there beside it, as a part of it.
+    #[serde(default)]
+    pub beside: Vec<String>,
 }
 
 impl Found {

@@ -51,6 +51,7 @@ fn named(id: &str, site: &str, value: f64) -> NamedEffect {
             title: String::new(),
             probability: 1.0,
         }],
+        beside: vec![],
         split_by: None,
         runner_up: None,
         not_addable: None,

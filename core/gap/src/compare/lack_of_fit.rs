@@ -17,6 +17,7 @@ use rand::{Rng, SeedableRng};
 use rayon::prelude::*;
 
 use super::noise::Noise;
+use super::sets;
 use crate::covariates::Covariates;
 use crate::error::GapError;
 use crate::statistics::f_tail;
@@ -70,7 +71,11 @@ pub fn misfit(
         return Ok(found);
     }
     let once = standardized.once_per_cell(measurements);
-    let by_dependence = of_dependence(measurements, &once, covariates, &repeated, seed, context)?;
+    let mut by_dependence = of_dependence(measurements, &once, covariates, &repeated, seed, context)?;
+    let told: Vec<(usize, &[f64])> = once.told(measurements);
+    if let Some(by_sets) = sets::by_chance(measurements, &told, seed, context)? {
+        by_dependence.p_value = sets::together(by_dependence.p_value, by_sets);
+    }
     Ok(match by_repeats {
         None => by_dependence,
         // Two tests: twice the smaller probability.
@@ -117,6 +122,13 @@ fn standardized(
 }
 
 impl Standardized {
+    /// Each row with its residual, in units of the floor.
+    fn told(&self, measurements: &Measurements) -> Vec<(usize, &[f64])> {
+        let residual = self.residual.as_slice();
+        let len = |row: usize| measurements.rows[row].what.len();
+        self.rows.iter().zip(&self.start).map(|(&row, &at)| (row, &residual[at..at + len(row)])).collect()
+    }
+
     /// Means of cells, each in the place of the cell's first row: repeats do not speak twice of
     /// what they depend on.
     fn once_per_cell(&self, measurements: &Measurements) -> Self {

@@ -12,6 +12,7 @@ mod noise;
 mod oddities;
 mod outliers;
 mod poses;
+mod sets;
 mod spread;
 mod structure;
 mod turns;

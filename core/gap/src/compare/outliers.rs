@@ -44,7 +44,20 @@ pub fn outliers(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> 
         }
         keep_conditions(measurements, residuals, &mut out);
     }
+    keep_sets(measurements, &mut out);
     out
+}
+
+/// Where half of a set of what the eyes saw is off, or more of it, the eyes stood otherwise meanwhile: each of its rows is off
+/// another way, by where it was seen, and none is a mishap.
+fn keep_sets(measurements: &Measurements, out: &mut [bool]) {
+    for label in measurements.sets_of_eyes() {
+        let is_in = |i: &usize| measurements.rows[*i].set.as_ref() == Some(&label);
+        let own: Vec<usize> = (0..out.len()).filter(is_in).collect();
+        if 2 * own.iter().filter(|&&i| out[i]).count() >= own.len() {
+            own.iter().for_each(|&i| out[i] = false);
+        }
+    }
 }
 
 /// Per point and coordinate, how far it lies from the median of its neighbors.

@@ -132,6 +132,7 @@ fn named(effect: &Effect, probability: f64) -> NamedEffect {
         size_sigmas: 2.0,
         size_m: 2e-3,
         class: vec![member(effect, probability)],
+        beside: vec![],
         split_by: None,
         runner_up: None,
         not_addable: None,

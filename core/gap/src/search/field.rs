@@ -16,10 +16,14 @@ use plumbline_effects::Kind;
 
 use super::library::Block;
 use super::linear::{Sums, gram_of};
+use super::variants::LARGEST;
 use crate::statistics::ln_not_negative;
 
 /// Dirt is at most this share of a usual size.
 const LARGEST_DIRT: f64 = 0.1;
+/// Where effects of the eyes are large they may have so many usual sizes, whatever tells the noise: what a lens or a turned
+/// eye does follows from optics, so that a large one is no sign of a formula that does not hold.
+const LARGER_EYES: f64 = 4.0;
 
 /// How noise and prior sizes are taken to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -162,7 +166,13 @@ impl Field {
                 one_sided[c] = block.is_one_sided;
                 let reach = sizes[c] * (block.len as f64).sqrt();
                 // Nobody logs an angle more than all of the way too early.
-                let most = if block.kind == Some(Kind::EarlyLog) { 1.0 } else { variant.most };
+                let most = match block.kind {
+                    Some(Kind::EarlyLog) => 1.0,
+                    Some(kind) if kind.is_of_eyes() && variant.size >= LARGEST => {
+                        variant.most.max(LARGER_EYES)
+                    }
+                    _ => variant.most,
+                };
                 scale[c] = 1.0 / (most.powi(-2) + (reach / variant.size).powi(2)).sqrt();
             }
         }

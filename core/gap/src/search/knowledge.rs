@@ -14,7 +14,7 @@ const DEAD_SIGMAS: f64 = 0.5;
 /// A usual size that stands out of the noise by less than this is flat.
 const FLAT_SIGMAS: f64 = 2.0;
 /// Two candidates trade against each other from this cosine on.
-const ALIKE: f64 = 0.95;
+pub(super) const ALIKE: f64 = 0.95;
 /// Less of the doubt is gone than this: not pinned.
 const DOUBT_LEFT: f64 = 0.5;
 /// At most so many partners are listed.

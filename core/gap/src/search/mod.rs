@@ -10,6 +10,7 @@
 //!
 //! The method with its assumptions is described in the package's README.
 
+mod beside;
 mod explore;
 mod field;
 mod finish;

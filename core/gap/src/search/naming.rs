@@ -5,7 +5,7 @@ use plumbline_effects::{Effect, Kind};
 
 use super::explore::{Explored, Model};
 use super::field::log_sum;
-use super::library::{Library, together};
+use super::library::{Block, Library, together};
 use super::look::Look;
 use super::variants::UNKNOWN_CELL;
 use crate::compare::f_tail;
@@ -13,16 +13,18 @@ use crate::finding::{ClassMember, FloorSource, FoundParameter, NamedEffect, Verd
 use crate::floor::Floor;
 
 /// Names whose odds against the best one are no worse than this cannot be told from it.
-const SAME_CLASS_ODDS: f64 = 10.0;
+pub(super) const SAME_CLASS_ODDS: f64 = 10.0;
 /// Effects of a class are named from this probability of the class on.
 const NAMED_FROM: f64 = 0.5;
 /// An effect that does less than this to the rows (floors) is dirt and gets no name.
-const SMALLEST: f64 = 0.5;
+pub(super) const SMALLEST: f64 = 0.5;
 /// The largest one, when all else agrees, may be a little smaller.
 const SMALLEST_FIRST: f64 = 0.4;
 /// Standard deviations of values are larger by this than the linear model says: what real joints do
 /// is not quite what the library says (seen on development cases of the blind test).
 pub(super) const WIDER: f64 = 1.5;
+/// What lenses do is nearer to what the library says (seen on development cases as well).
+const WIDER_OF_EYES: f64 = 1.25;
 /// A rival counts as something unknown when it does this to the rows, and this share of all.
 const RIVAL_SIZE: f64 = 0.4;
 const RIVAL_SHARE: f64 = 0.15;
@@ -34,8 +36,11 @@ const RIVAL_CLOSES: f64 = 0.2;
 const RIVAL_P: f64 = 0.02;
 /// Effects that do more to the rows than this many times the whole gap cancel each other: no name.
 const CANCELLING: f64 = 1.5;
-/// Eyes that each turn their own way with their heat: what they do together is less than what each does.
-const CANCELLING_GROWN: f64 = 4.0;
+/// Of eyes, which turn their own way each: what they do together is less than what each does, and optics hold so exactly
+/// that two of them do not make up for what a formula leaves.
+const CANCELLING_OF_EYES: f64 = 4.0;
+/// So many effects of the eyes that each do more than the whole gap are no coincidence.
+const MANY_CANCELLING: usize = 3;
 /// Beyond this many usual sizes a fit is at its bound.
 const BOUND: f64 = 3.0;
 /// One name stands for its class from this probability on.
@@ -147,6 +152,7 @@ impl Evidence<'_> {
         let is_dirt = p_value >= RIVAL_P && self.look.gap() < MOST_DIRT;
         let nameless = effects.is_empty() && self.p_bare() < VETO_P && self.look.gap() > NO_DIRT && !is_dirt;
         let unknown = unknown.max(if nameless { 0.6 } else { 0.0 });
+        let unknown = unknown.max(if self.cancel_each_other(&top) { 0.95 } else { 0.0 });
         let verdict = if unknown > 0.5 {
             Verdict::NotInLibrary
         } else if effects.is_empty() {
@@ -181,8 +187,8 @@ impl Evidence<'_> {
             let (own, covariance) = &values[place];
             let size = sizes[place];
             let least = noise * if size >= largest { SMALLEST_FIRST } else { SMALLEST };
-            let grows = self.library.effects[block].growth().is_some();
-            let cancelling = if grows { CANCELLING_GROWN } else { CANCELLING };
+            let of_eyes = self.library.effects[block].kind.is_of_eyes();
+            let cancelling = if of_eyes { CANCELLING_OF_EYES } else { CANCELLING };
             if size < least {
                 continue;
             }
@@ -206,6 +212,16 @@ impl Evidence<'_> {
             }
         }
         (found, rest)
+    }
+
+    /// Whether so many effects of the eyes do more than the whole gap each that together they stand for something else: that
+    /// two nearly cancel each other is a coincidence, that several do is what a fit makes of what no name stands for.
+    fn cancel_each_other(&self, set: &[usize]) -> bool {
+        let is_large = |(&block, (own, _)): (&usize, &(Vec<f64>, DMatrix<f64>))| {
+            let of_eyes = self.library.effects[block].kind.is_of_eyes();
+            of_eyes && self.look.does(block, own) > self.look.gap()
+        };
+        set.iter().zip(&self.values(set)).filter(|one| is_large(*one)).count() >= MANY_CANCELLING
     }
 
     /// Names of the most probable set, of those that cannot be told from the first one, that gives all of these names and
@@ -360,7 +376,8 @@ impl Evidence<'_> {
             .map(|&block| {
                 let len = self.look.blocks[block].len;
                 let own = means.rows(at, len).iter().copied().collect();
-                let covariance = covariance.view((at, at), (len, len)) * (WIDER * WIDER);
+                let covariance =
+                    covariance.view((at, at), (len, len)) * self.look.blocks[block].wider().powi(2);
                 at += len;
                 (own, covariance)
             })
@@ -442,6 +459,7 @@ impl Evidence<'_> {
             })
             .map(|model| model.probability)
             .sum();
+        let class_names: Vec<usize> = members.iter().map(|(name, ..)| *name).collect();
         let typical: Vec<f64> = effect.parameters().iter().map(|parameter| parameter.typical).collect();
         let values: Vec<f64> = own.iter().zip(&typical).map(|(value, typical)| value * typical).collect();
         let covariance = covariance + self.by_shapes(block, own) + self.by_companions(set, block, own);
@@ -470,6 +488,7 @@ impl Evidence<'_> {
             size_sigmas: size,
             size_m: size * self.floor_m,
             class,
+            beside: self.beside(set, block, &class_names, names),
             split_by: None,
             runner_up,
             not_addable: not_addable.map(str::to_owned),
@@ -504,6 +523,13 @@ impl Evidence<'_> {
                 Some((name, log_sum(shapes.iter().map(|(score, _)| *score)), best))
             })
             .collect()
+    }
+}
+
+impl Block {
+    /// Standard deviations of its values are larger by this than the linear model says.
+    pub(super) fn wider(&self) -> f64 {
+        if self.kind.is_some_and(Kind::is_of_eyes) { WIDER_OF_EYES } else { WIDER }
     }
 }
 

@@ -109,6 +109,7 @@ fn of_effect(effect: &Effect, slope: Slope, size: &Size, probability: f64) -> Na
         size_sigmas: size.sigmas,
         size_m: size.m,
         class: vec![class],
+        beside: vec![],
         split_by: None,
         runner_up: None,
         not_addable: None,
