@@ -11,6 +11,11 @@ use crate::observation::{Observation, What};
 /// More sets than these are no stretches of one measurement, and fewer rows do not tell how an eye stood.
 const MOST_SETS: usize = 8;
 const LEAST_IN_SET: usize = 6;
+/// Places that are no farther apart are one, m.
+const SAME_PLACE_M: f64 = 0.02;
+/// Estimates of fewer places do not tell an eye that rolls from one that turns sideways, nor one that pitches from both that
+/// nod: image points do.
+const ROLL_SHOWS_AT: usize = 3;
 /// A joint of the neck that moved by less shows no zero of its own, rad.
 const NECK_MOVED_RAD: f64 = 0.02;
 
@@ -76,6 +81,7 @@ impl Known {
             arm: !of_arm.is_empty(),
             eyes: !of_eyes.is_empty(),
             watched: of_eyes.iter().any(|row| row.stand.is_some()),
+            roll_shows: measurements.has(What::EyePoints) || places(&of_eyes) >= ROLL_SHOWS_AT,
             neck_moved: neck_moved(&of_eyes),
             only_watched: !of_eyes.is_empty() && of_eyes.iter().all(|row| row.stand.is_some()),
             eye_sets: measurements.sets_of_eyes(),
@@ -113,6 +119,17 @@ impl Measurements {
             (2..=MOST_SETS).contains(&counts.len()) && counts.values().all(|count| *count >= LEAST_IN_SET);
         if is_told { counts.into_keys().cloned().collect() } else { vec![] }
     }
+}
+
+/// At how many places things were watched.
+fn places(rows: &[&Observation]) -> usize {
+    let mut known: Vec<nalgebra::Point3<f64>> = vec![];
+    for at in rows.iter().filter(|row| row.stand.is_some()).filter_map(|row| row.truth_m) {
+        if known.iter().all(|other| (other - at).norm() > SAME_PLACE_M) {
+            known.push(at);
+        }
+    }
+    known.len()
 }
 
 /// Which joints of the neck moved from row to row.

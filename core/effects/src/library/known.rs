@@ -38,6 +38,8 @@ pub(crate) struct Known {
     pub(crate) background: bool,
     /// The eyes watched things that stood still.
     pub(crate) watched: bool,
+    /// What was seen of them tells an eye that rolls from others.
+    pub(crate) roll_shows: bool,
     /// Which joints of the neck moved.
     pub(crate) neck_moved: Vec<bool>,
     /// They watched nothing else: what is constant there has no name.
@@ -135,7 +137,8 @@ impl Known {
     /// An effect of the eyes with every time law that is tried.
     fn grown(&self, effect: &Effect) -> Vec<Effect> {
         let span_s = span(&self.eye_secs);
-        if span_s < SHORTEST_SPAN_S {
+        let is_told = effect.kind != Kind::EyeRoll || self.roll_shows;
+        if span_s < SHORTEST_SPAN_S || !is_told {
             return vec![];
         }
         let lasts = |constant: &f64| *constant <= 2.0 * span_s;

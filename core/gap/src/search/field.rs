@@ -22,7 +22,8 @@ use crate::statistics::ln_not_negative;
 /// Dirt is at most this share of a usual size.
 const LARGEST_DIRT: f64 = 0.1;
 /// Where effects of the eyes are large they may have so many usual sizes, whatever tells the noise: what a lens or a turned
-/// eye does follows from optics, so that a large one is no sign of a formula that does not hold.
+/// eye does follows from optics, so that a large one is no sign of a formula that does not hold. How something grows in the course of
+/// time does not.
 const LARGER_EYES: f64 = 4.0;
 
 /// How noise and prior sizes are taken to be.
@@ -168,7 +169,7 @@ impl Field {
                 // Nobody logs an angle more than all of the way too early.
                 let most = match block.kind {
                     Some(Kind::EarlyLog) => 1.0,
-                    Some(kind) if kind.is_of_eyes() && variant.size >= LARGEST => {
+                    Some(kind) if kind.is_of_eyes() && !block.grows_sideways && variant.size >= LARGEST => {
                         variant.most.max(LARGER_EYES)
                     }
                     _ => variant.most,
