@@ -24,6 +24,9 @@ pub(super) const NAMED_FROM: f32 = 220.0;
 /// Where the names of the axes have less room, the unit alone is said, pt.
 const NAMES_WIDTH: f32 = 150.0;
 
+/// What a number below the map needs with the room beside it, pt.
+const NUMBER_WIDTH: f32 = 32.0;
+
 /// Half width and half depth of the torso, meters; a sign, not a measurement.
 const TORSO_M: [f64; 2] = [0.11, 0.05];
 
@@ -112,7 +115,8 @@ impl Map {
             self.painter.hline(rect.x_range(), y, stroke);
             word(pos2(rect.left() - 6.0, y), Align2::RIGHT_CENTER, format::fixed(x, 0));
         }
-        for y in axis::ticks(near[1] * 1e3, far[1] * 1e3, most(rect.width(), 32.0)) {
+        // So many ticks may lie closer than their share of the width by one of them.
+        for y in axis::ticks(near[1] * 1e3, far[1] * 1e3, most(rect.width() - NUMBER_WIDTH, NUMBER_WIDTH)) {
             let x = self.transform.to_screen([0.0, y * 1e-3]).x;
             self.painter.vline(x, rect.y_range(), stroke);
             if rect.right() - x < 14.0 {
