@@ -265,8 +265,8 @@ mod tests {
             n.on_screen(start + Duration::from_secs(s)).map(|n| n.text.clone()).collect::<Vec<_>>()
         };
         assert_eq!(texts(&notifications, 1), ["saved", "camera lost"]);
-        assert_eq!(texts(&notifications, 30), ["camera lost"], "what failed stays longer");
-        assert!(texts(&notifications, 61).is_empty(), "and leaves, too");
+        assert_eq!(texts(&notifications, 20), ["camera lost"], "what failed stays longer");
+        assert!(texts(&notifications, 26).is_empty(), "and leaves, too");
         let failed = notifications.history().next().expect("newest").number;
         notifications.dismiss(failed);
         assert_eq!(texts(&notifications, 1), ["saved"]);
@@ -282,13 +282,13 @@ mod tests {
         };
         say(Severity::Failed, "camera lost", 0);
         say(Severity::Info, "saved", 1);
-        say(Severity::Failed, "camera lost", 40);
-        say(Severity::Warning, "camera lost", 41);
+        say(Severity::Failed, "camera lost", 20);
+        say(Severity::Warning, "camera lost", 21);
         let at_s = |n: &Notifications, s: u64| {
             n.on_screen(start + Duration::from_secs(s)).map(Notification::words).collect::<Vec<_>>()
         };
-        assert_eq!(at_s(&notifications, 42), ["camera lost (2 times)", "camera lost"]);
-        assert_eq!(at_s(&notifications, 90), ["camera lost (2 times)"], "it counts from the last time");
+        assert_eq!(at_s(&notifications, 22), ["camera lost (2 times)", "camera lost"]);
+        assert_eq!(at_s(&notifications, 40), ["camera lost (2 times)"], "it counts from the last time");
         notifications.repeat_at(Severity::Failed, "camera lost", 1, start + Duration::from_secs(300));
         assert_eq!(at_s(&notifications, 301), ["camera lost"], "long after it is news again");
         assert_eq!(notifications.history().count(), 4);
