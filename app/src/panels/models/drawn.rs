@@ -134,7 +134,8 @@ pub fn length(error_m: [f64; 3]) -> f64 {
 
 pub fn means_m(map: &ModelMap) -> Option<[f64; 2]> {
     let after_m: f64 = map.touches.iter().map(|touch| length(touch.after_m)).sum();
-    Some([map.without_m?, after_m / map.touches.len() as f64])
+    let without_m = map.without_m.filter(|_| !map.touches.is_empty())?;
+    Some([without_m, after_m / map.touches.len() as f64])
 }
 
 /// "Inside the border targets shift 21 mm on average, outside 54 mm: do not trust it there."
