@@ -2,6 +2,7 @@
 
 use egui::Ui;
 use plumbline_engine::View;
+use plumbline_model::listed;
 
 use super::sheet::{Asked, buttons, title};
 
@@ -40,24 +41,9 @@ pub(super) fn sheet_of_unaccepted(ui: &mut Ui, view: &View) -> Asked {
     }
 }
 
-/// "a", "a and b", "a, b and c".
-fn listed(what: &[&str]) -> String {
-    match what {
-        [] => "nothing".to_owned(),
-        [one] => (*one).to_owned(),
-        [first @ .., last] => format!("{} and {last}", first.join(", ")),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn what_is_listed_reads_as_a_sentence() {
-        assert_eq!(listed(&["a"]), "a");
-        assert_eq!(listed(&["a", "b", "c"]), "a, b and c");
-    }
 
     #[test]
     fn nothing_is_asked_where_nothing_is_open() {

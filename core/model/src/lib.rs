@@ -40,7 +40,7 @@ pub use calibration::{
 };
 pub use camera::{Camera, CameraModel, Fisheye, ModelKind, Pinhole, ProjectError};
 pub use chessboard::{BoardError, Chessboard, InnerCorners, default_board};
-pub use counted::counted;
+pub use counted::{counted, listed};
 pub use detection::{ClassIndex, ClassNames, Detection, PixelBox};
 pub use formats::FormatError;
 pub use frame::{

@@ -7,7 +7,7 @@ pub use grid::CoverageGrid;
 pub use histogram::Histogram;
 
 use egui::{Align2, Color32, Rect, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
-use plumbline_model::Eye;
+use plumbline_model::{Eye, listed};
 
 use crate::axis;
 use crate::colormap::Colormap;
@@ -69,7 +69,7 @@ impl Coverage {
         for eye in Eye::BOTH {
             let regions = self.grid(eye).missing_regions();
             if !regions.is_empty() {
-                missing.push(format!("{} of the {eye} image", join(&regions)));
+                missing.push(format!("{} of the {eye} image", listed(&regions)));
             }
         }
         if let Some(range) = self.distance_m.emptiest() {
@@ -83,14 +83,6 @@ impl Coverage {
         }
         let shown = missing.len().min(3);
         format!("Not shown yet: {}.", missing[..shown].join("; "))
-    }
-}
-
-fn join(words: &[&str]) -> String {
-    match words {
-        [] => String::new(),
-        [one] => (*one).to_owned(),
-        [first @ .., last] => format!("{} and {last}", first.join(", ")),
     }
 }
 

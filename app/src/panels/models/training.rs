@@ -109,11 +109,7 @@ fn button(ui: &mut Ui, cx: &mut PanelContext<'_>) {
 /// "M1, M2 and M3".
 fn listed(methods: &[Method]) -> String {
     let names: Vec<&str> = methods.iter().map(|method| method.name()).collect();
-    match names.as_slice() {
-        [] => "models".to_owned(),
-        [one] => (*one).to_owned(),
-        [first @ .., last] => format!("{} and {last}", first.join(", ")),
-    }
+    if names.is_empty() { "models".to_owned() } else { plumbline_model::listed(&names) }
 }
 
 /// How the last training ended, when it did not end well.

@@ -181,11 +181,7 @@ fn places(around: &GraspAround) -> Gate {
     if lacks.is_empty() {
         return open("Places", "Lenses, mount and screen were calibrated.");
     }
-    let what = match lacks.as_slice() {
-        [one] => (*one).to_owned(),
-        [first @ .., last] => format!("{} and {last}", first.join(", ")),
-        [] => String::new(),
-    };
+    let what = plumbline_model::listed(&lacks);
     let wide = if around.model.unmeasured().mount { WIDE } else { "" };
     doubtful("Places", format!("Not calibrated, taken as described: {what}.{wide}"))
 }
