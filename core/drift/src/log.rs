@@ -1,9 +1,9 @@
 //! What was watched, as rows of a session: the gap search tells from them what turns, and with which law.
 
 use nalgebra::{Rotation3, Vector3};
-use plumbline_model::Point;
 use plumbline_model::robot::{Posture, Rig};
 use plumbline_model::session::{LocalizationRow, LocalizationTable};
+use plumbline_model::{Pixel, Point, Raw};
 
 use crate::monitor::Sample;
 
@@ -55,11 +55,13 @@ pub fn log_of(rig: &Rig, posture: &Posture, samples: &[Sample]) -> Result<Locali
     let mut rows = Vec::new();
     for sample in spread(samples, first.at_s, span_s) {
         for (name, at) in places(rig) {
-            let estimate =
+            let ([left, right], estimate) =
                 comes_out(rig, posture, at, sample.look.turns_rad).ok_or(LogError::TableNotSeen)?;
             rows.push(LocalizationRow {
                 truth: Some(at),
                 estimate: Some(estimate),
+                left: Some(left),
+                right: Some(right),
                 head_rad: head_rad.clone(),
                 t_secs: Some(sample.at_s),
                 object: Some(name.to_owned()),
@@ -103,13 +105,14 @@ fn places(rig: &Rig) -> [(&'static str, Point<plumbline_model::Robot>); 3] {
     ]
 }
 
-/// Where a place comes out when each eye has turned (rad, own axes).
+/// Where both eyes see a place when each has turned (rad, own axes), and where it comes out. A place alone does not tell
+/// an eye that nods against the other from both that nod: where the right one sees it lower than the left one does.
 fn comes_out(
     rig: &Rig,
     posture: &Posture,
     at: Point<plumbline_model::Robot>,
     turns_rad: [Vector3<f64>; 2],
-) -> Option<Point<plumbline_model::Robot>> {
+) -> Option<([Pixel<Raw>; 2], Point<plumbline_model::Robot>)> {
     let robot_from_left = rig.robot_from_left(posture);
     let cameras = &rig.eyes.cameras;
     let in_left = robot_from_left.inverse() * at;
@@ -117,5 +120,5 @@ fn comes_out(
     let [left, right] = turns_rad.map(Rotation3::new);
     let left = cameras.left.project(&(left * in_left.coords.coords)).ok()?;
     let right = cameras.right.project(&(right * in_right.coords.coords)).ok()?;
-    Some(robot_from_left * cameras.triangulate(left, right)?)
+    Some(([left, right], robot_from_left * cameras.triangulate(left, right)?))
 }

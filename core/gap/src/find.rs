@@ -207,6 +207,7 @@ fn assemble(
 ) -> Finding {
     let unrelated = !compared.is_related;
     let undetermined = found.as_ref().map_or_else(Vec::new, |found| found.undetermined.clone());
+    let many = found.as_ref().and_then(|found| found.many);
     let unexplained = Unexplained {
         p_value: compared.comparison.p_value,
         probability: if unrelated { 1.0 } else { 0.0 },
@@ -237,6 +238,7 @@ fn assemble(
         placements: assumed.placements,
         mounts: assumed.mounts,
         partial: false,
+        many,
         undetermined,
         left_out: measurements.left_out.clone(),
         warnings: compared.warnings,

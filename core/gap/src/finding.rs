@@ -72,6 +72,10 @@ pub struct Finding {
     /// rows that were not used, and can be added as that.
     #[serde(default)]
     pub partial: bool,
+    /// Probability that everything is a little off at once, where that is more probable than any few effects: those
+    /// found stand for it, and are as sure as they stand out of all the others.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub many: Option<f64>,
     /// What stays unexplained.
     pub unexplained: Unexplained,
     /// What of the effects these rows do not tell.

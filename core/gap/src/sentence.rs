@@ -9,7 +9,8 @@ pub(crate) fn of(finding: &Finding) -> String {
     match finding.verdict {
         Verdict::NoGap => no_gap(finding),
         Verdict::Named | Verdict::Class => {
-            let mut said: Vec<String> = finding.effects.iter().take(MOST_EFFECTS).map(effect).collect();
+            let mut said: Vec<String> = finding.many.iter().map(|_| MUCH.to_owned()).collect();
+            said.extend(finding.effects.iter().take(MOST_EFFECTS).map(effect));
             said.extend(more(&finding.effects));
             said.extend(
                 finding
@@ -26,6 +27,9 @@ pub(crate) fn of(finding: &Finding) -> String {
     }
 }
 
+/// Said before the few that stand for it.
+const MUCH: &str = "Much is a little off at once: that explains the gap better than any few effects. These stand for it best; \
+     which of them are really there is not sure.";
 /// So many effects are told, the others counted.
 const MOST_EFFECTS: usize = 3;
 /// So many of its parameters are told.

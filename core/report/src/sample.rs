@@ -262,6 +262,7 @@ fn base() -> Finding {
         placements: vec![Isometry3::identity()],
         mounts: vec![],
         partial: false,
+        many: None,
         undetermined: vec![],
         left_out: vec![],
         warnings: vec![],

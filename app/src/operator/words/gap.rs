@@ -58,6 +58,7 @@ pub fn verdict(verdict: Verdict) -> &'static str {
 pub fn heading(finding: &Finding) -> &'static str {
     match finding.verdict {
         Verdict::NoGap if !finding.is_all_clear() => "Not told from noise",
+        Verdict::Class if finding.many.is_some() => "Much is a little off at once",
         of => verdict(of),
     }
 }

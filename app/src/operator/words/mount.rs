@@ -8,9 +8,10 @@ use super::sentence;
 /// Of a normal distribution 95 % lie within so many standard deviations.
 const NORMAL_95: f64 = 1.96;
 
-/// Whether nothing speaks against it, and that as a sentence: "Good: …", or "Doubtful." and the first doubt.
+/// Whether nothing speaks against it, and that as a sentence: "Good: …", or "Doubtful." and the first doubt. A remark on what
+/// the stated uncertainty holds already is none.
 pub fn verdict(summary: &MountSummary) -> (bool, String) {
-    let doubts: Vec<&String> = summary.not_seen.iter().chain(&summary.remarks).collect();
+    let (doubts, held) = summary.doubts();
     if let [first, more @ ..] = doubts.as_slice() {
         let more = match more.len() {
             0 => String::new(),
@@ -26,7 +27,8 @@ pub fn verdict(summary: &MountSummary) -> (bool, String) {
     };
     let error = format::px(summary.rms_px);
     let known = format::degrees(NORMAL_95 * sd_rad);
-    (true, format!("Good: {views} to {error}, and where the eyes look is known to {known} (95 %)."))
+    let with = if held.is_empty() { "" } else { ", with what is remarked on" };
+    (true, format!("Good: {views} to {error}, and where the eyes look is known to {known} (95 %{with})."))
 }
 
 #[cfg(test)]
@@ -63,6 +65,16 @@ mod tests {
                 format::degrees(1.96e-3)
             )
         );
+    }
+
+    #[test]
+    fn what_the_uncertainty_holds_is_no_doubt_of_it() {
+        let slack = "the neck has slack; the stated uncertainty includes it".to_owned();
+        let (good, said) = verdict(&MountSummary { remarks: vec![slack.clone()], ..summary() });
+        assert!(good && said.ends_with("(95 %, with what is remarked on)."), "{said}");
+        let lenses = "calibrate the eyes from board pairs to have it".to_owned();
+        let (good, said) = verdict(&MountSummary { remarks: vec![slack, lenses], ..summary() });
+        assert!(!good && said.starts_with("Doubtful. Calibrate the eyes"), "{said}");
     }
 
     #[test]

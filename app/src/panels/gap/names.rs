@@ -98,6 +98,9 @@ fn verdict(ui: &mut Ui, finding: &Finding) {
             "Nothing has to be added. Measure again when something was changed or after some weeks."
         }
         Verdict::Named => "",
+        Verdict::Class if finding.many.is_some() => {
+            "A correction needs no names: adding these, with small shares of everything else, corrects what was measured. To repair something, ask for names first: measure with repeats, other heights, and a weight."
+        }
         Verdict::Class => {
             "These data fit several names equally well. Adding the most probable one corrects what was measured; the experiment says which one is right elsewhere, too."
         }
@@ -138,7 +141,8 @@ fn card(ui: &mut Ui, cx: &mut PanelContext<'_>, shown: &ShownFinding, i: usize) 
             ui.label(text);
         }
         sizes(ui, effect, &shown.finding.shown);
-        let role = if shown.finding.verdict == Verdict::NotInLibrary { Role::Weak } else { Role::Predicted };
+        let is_weak = shown.finding.verdict == Verdict::NotInLibrary || shown.finding.many.is_some();
+        let role = if is_weak { Role::Weak } else { Role::Predicted };
         if effect.class.len() > 1 {
             probability_bar(ui, &format!("{}, class", effect.title), effect.class_probability, role)
                 .on_hover_text("Probability that it is one of the names below");

@@ -104,8 +104,12 @@ fn figure(ui: &mut Ui, quantity: Quantity, value: f64, sigma: f64) {
 fn notes(ui: &mut Ui, proposal: &MountSummary) {
     let warning = Role::Warning.color(theme::tokens(ui));
     ui.add_space(space::S);
-    for sentence in proposal.not_seen.iter().chain(&proposal.remarks) {
+    let (doubts, held) = proposal.doubts();
+    for sentence in doubts {
         ui.label(RichText::new(words::sentence(sentence)).color(warning));
+    }
+    for sentence in held {
+        ui.label(theme::small(ui, words::sentence(sentence)));
     }
     for (name, why) in &proposal.rejected {
         ui.label(theme::small(ui, format!("{name} is left out: {why}.")));

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use plumbline_model::frame::{Head, LeftCamera, Pose};
+use plumbline_vision::mount::is_included;
 
 use crate::ground::step::StepState;
 
@@ -78,4 +79,13 @@ pub struct MountSummary {
     pub remarks: Vec<String>,
     /// When it was solved.
     pub at: jiff::Timestamp,
+}
+
+impl MountSummary {
+    /// What speaks against the numbers, and what they hold already.
+    pub fn doubts(&self) -> (Vec<&str>, Vec<&str>) {
+        let (held, others): (Vec<&str>, Vec<&str>) =
+            self.remarks.iter().map(String::as_str).partition(|remark| is_included(remark));
+        (self.not_seen.iter().map(String::as_str).chain(others).collect(), held)
+    }
 }

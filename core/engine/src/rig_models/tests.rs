@@ -101,6 +101,7 @@ fn finding(effects: Vec<NamedEffect>) -> Finding {
         placements: vec![nalgebra::Isometry3::translation(0.004, -0.002, 0.001)],
         mounts: vec![],
         partial: false,
+        many: None,
         undetermined: vec![],
         left_out: vec![],
         warnings: vec![],

@@ -114,6 +114,7 @@ fn found(measurements: &Measurements, verdict: Verdict, sets: &[(&[Present], f64
         unexplained: Unexplained { p_value: 0.3, probability: 0.02, depends_on: vec![], share: 0.1 },
         weights: vec![1.0; measurements.rows.len()],
         hypotheses,
+        many: None,
     }
 }
 

@@ -16,16 +16,10 @@ use plumbline_effects::Kind;
 
 use super::library::Block;
 use super::linear::{Sums, gram_of};
-use super::variants::LARGEST;
 use crate::statistics::ln_not_negative;
 
 /// Dirt is at most this share of a usual size.
 const LARGEST_DIRT: f64 = 0.1;
-/// Where effects of the eyes are large they may have so many usual sizes, whatever tells the noise: what a lens or a turned
-/// eye does follows from optics, so that a large one is no sign of a formula that does not hold. How something grows in the course of
-/// time does not.
-const LARGER_EYES: f64 = 4.0;
-
 /// How noise and prior sizes are taken to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Variant {
@@ -77,6 +71,26 @@ pub(super) struct Framed {
     total: f64,
 }
 
+impl Variant {
+    /// How much of every column is there as dirt, usual sizes. `sizes`: root mean square per column, of plain weights;
+    /// `dirty`: columns that dirt is made of; `always`: what is there at least, usual sizes.
+    pub fn narrow(&self, sizes: &[f64], dirty: &[bool], always: &[f64]) -> DVector<f64> {
+        let kinds = dirty.iter().filter(|dirty| **dirty).count().max(1) as f64;
+        DVector::from_fn(sizes.len(), |c, _| {
+            let is_there = dirty[c] && sizes[c] > 1e-9;
+            let own = || (self.dirt / kinds.sqrt() / sizes[c]).min(LARGEST_DIRT).max(always[c]);
+            if is_there { own() } else { 0.0 }
+        })
+    }
+}
+
+impl Dirtied {
+    /// Evidence of nothing but noise, cells and dirt, log.
+    pub fn log_evidence(&self) -> f64 {
+        self.log_evidence
+    }
+}
+
 impl Framed {
     /// Of sums, when cells are off by this variance; `present` are values (usual sizes) that the
     /// residual was taken at, by column: they are put back.
@@ -117,23 +131,10 @@ impl Framed {
         (0..self.a.ncols()).map(|k| (self.a[(k, k)].max(0.0) / self.total).sqrt()).collect()
     }
 
-    /// With noise and dirt of a variant taken in. `sizes`: root mean square per column, of plain
-    /// weights; `dirty`: columns that dirt is made of; `always`: what is there at least, usual sizes.
-    pub fn dirtied(
-        &self,
-        variant: Variant,
-        blocks: &[Block],
-        sizes: &[f64],
-        dirty: &[bool],
-        always: &[f64],
-    ) -> Option<Dirtied> {
+    /// With the noise of a variant and so much of every column (standard deviation, usual sizes) taken in.
+    pub fn dirtied(&self, variant: Variant, narrow: &DVector<f64>) -> Option<Dirtied> {
         let k = self.a.ncols();
         let noise = 1.0 / (variant.noise * variant.noise);
-        let kinds = dirty.iter().filter(|dirty| **dirty).count().max(1) as f64;
-        let mut narrow = DVector::zeros(k);
-        for c in blocks.iter().flat_map(Block::columns).filter(|&c| dirty[c] && sizes[c] > 1e-9) {
-            narrow[c] = (variant.dirt / kinds.sqrt() / sizes[c]).min(LARGEST_DIRT).max(always[c]);
-        }
         let small: Vec<usize> = (0..k).filter(|&c| narrow[c] > 0.0).collect();
         let mut log_evidence = -0.5 * (noise * self.square + self.logs + self.gauge * noise.ln())
             - self.total * variant.noise.ln();
@@ -167,13 +168,7 @@ impl Field {
                 one_sided[c] = block.is_one_sided;
                 let reach = sizes[c] * (block.len as f64).sqrt();
                 // Nobody logs an angle more than all of the way too early.
-                let most = match block.kind {
-                    Some(Kind::EarlyLog) => 1.0,
-                    Some(kind) if kind.is_of_eyes() && !block.grows_sideways && variant.size >= LARGEST => {
-                        variant.most.max(LARGER_EYES)
-                    }
-                    _ => variant.most,
-                };
+                let most = if block.kind == Some(Kind::EarlyLog) { 1.0 } else { variant.most };
                 scale[c] = 1.0 / (most.powi(-2) + (reach / variant.size).powi(2)).sqrt();
             }
         }

@@ -9,6 +9,7 @@ use super::explore::{Explored, Model};
 use super::library::Library;
 use super::linear::Linear;
 use super::look::{Look, TEMPERATURE};
+use super::many::Many;
 use super::naming::{Evidence, Named, WIDER, parameters};
 use super::refit::{Fitted, frames, refit};
 use super::undetermined::undetermined;
@@ -34,6 +35,7 @@ pub(super) struct Finish<'a> {
     pub look: &'a Look,
     pub explored: &'a Explored,
     pub alone: Option<&'a Explored>,
+    pub many: Option<&'a Many>,
 }
 
 impl Finish<'_> {
@@ -44,6 +46,7 @@ impl Finish<'_> {
             look: self.look,
             explored: self.explored,
             alone: self.alone,
+            many: self.many.map(|many| (many, many.probability(self.explored))),
             floor: self.floor,
             floor_m: floor_m(self.measurements, self.floor),
             temperature: TEMPERATURE,
@@ -93,7 +96,7 @@ impl Finish<'_> {
         self.widen_by_masses(&mut named, &assumed, &fitted.weights, &sds, context)?;
         evidence.widen_by_shapes(&mut named);
         let undetermined = undetermined(self.measurements, &assumed.effects, &doubt.covariance, &sds);
-        let hypotheses = self.hypotheses(&assumed, context)?;
+        let hypotheses = self.hypotheses(&assumed, named.many.is_some(), context)?;
         let after = self.misses(&assumed, context)?;
         let share = share_left(&bare.misses, &after, &fitted.weights, doubt.noise_scale);
         let unexplained = Unexplained {
@@ -114,6 +117,7 @@ impl Finish<'_> {
             hypotheses,
             undetermined,
             floor: self.floor.clone(),
+            many: named.many,
         })
     }
 
@@ -191,8 +195,13 @@ impl Finish<'_> {
         })
     }
 
-    fn hypotheses(&self, best: &Assumed, context: &dyn JobContext) -> Result<Vec<Hypothesis>, GapError> {
-        if !self.options.advise {
+    fn hypotheses(
+        &self,
+        best: &Assumed,
+        is_many: bool,
+        context: &dyn JobContext,
+    ) -> Result<Vec<Hypothesis>, GapError> {
+        if !self.options.advise || is_many {
             return Ok(vec![]);
         }
         let mut merged: Vec<(Vec<usize>, f64)> = vec![];

@@ -13,6 +13,7 @@ use super::field::{Dirtied, Field, Framed, Variant};
 use super::free::{Rival, rivals};
 use super::library::{Block, Library};
 use super::linear::Linear;
+use super::many::Ground;
 use super::variants::variants;
 use crate::covariates::Covariates;
 use crate::error::GapError;
@@ -56,6 +57,8 @@ pub(super) struct Look {
     pub total: f64,
     pub within: (f64, f64),
     pub gauge: usize,
+    /// What evidence is made of.
+    pub ground: Ground,
 }
 
 impl Look {
@@ -123,9 +126,13 @@ impl Look {
             let parameters = library.effects[block].parameters();
             packed[block].columns().zip(parameters).for_each(|(c, pad)| always[c] = PAD_SD_M / pad.typical);
         }
-        let own_sizes: Vec<f64> = kept.iter().map(|&c| sizes[c]).collect();
-        let own_present = DVector::from_iterator(kept.len(), kept.iter().map(|&c| present[c]));
-        let small = sums.only(&kept);
+        let ground = Ground {
+            sums: sums.only(&kept),
+            present: DVector::from_iterator(kept.len(), kept.iter().map(|&c| present[c])),
+            sizes: kept.iter().map(|&c| sizes[c]).collect(),
+            dirty,
+            always,
+        };
         let mut fields: Vec<Field> = vec![];
         let mut framed: Option<(f64, Framed)> = None;
         let mut shared: Option<(Variant, Arc<Dirtied>)> = None;
@@ -136,22 +143,34 @@ impl Look {
             if !shared.as_ref().is_some_and(|(known, _)| like(known)) {
                 context.checkpoint()?;
                 if !framed.as_ref().is_some_and(|(cell, _)| *cell == variant.cell) {
-                    framed = Framed::of(&small, variant.cell * variant.cell, &own_present)
+                    framed = Framed::of(&ground.sums, variant.cell * variant.cell, &ground.present)
                         .map(|one| (variant.cell, one));
                 }
-                let dirtied = framed.as_ref().and_then(|(_, framed)| {
-                    framed.dirtied(variant, &of_allowed, &own_sizes, &dirty, &always)
-                });
+                let narrow = variant.narrow(&ground.sizes, &ground.dirty, &ground.always);
+                let dirtied = framed.as_ref().and_then(|(_, framed)| framed.dirtied(variant, &narrow));
                 shared = dirtied.map(|dirtied| (variant, Arc::new(dirtied)));
             }
             if let Some((_, shared)) = &shared {
-                fields.push(Field::new(variant, Arc::clone(shared), &of_allowed, &own_sizes));
+                fields.push(Field::new(variant, Arc::clone(shared), &of_allowed, &ground.sizes));
             }
         }
         let within = sums.within();
         let (total, gauge) = (sums.total, sums.gauge);
         let effects = library.blocks.len();
-        Ok(Self { blocks, packed, rivals, effects, fields, plain, sizes, allowed, total, within, gauge })
+        Ok(Self {
+            blocks,
+            packed,
+            rivals,
+            effects,
+            fields,
+            plain,
+            sizes,
+            allowed,
+            total,
+            within,
+            gauge,
+            ground,
+        })
     }
 
     /// Looks through sets of blocks, with rivals that are in no library or without.

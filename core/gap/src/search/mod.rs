@@ -19,6 +19,7 @@ mod knowledge;
 mod library;
 mod linear;
 mod look;
+mod many;
 mod masses;
 mod naming;
 mod refit;
@@ -81,6 +82,8 @@ pub(crate) struct Found {
     pub undetermined: Vec<Undetermined>,
     /// The noise with which it was found: as given, or fitted.
     pub floor: Floor,
+    /// Probability that everything is a little off at once, where that is more probable than a few effects.
+    pub many: Option<f64>,
 }
 
 /// What predictions may be off by, beside the noise of one measurement.
@@ -186,6 +189,12 @@ pub(crate) fn search(
     } else {
         None
     };
+    context.checkpoint()?;
+    let many = if explored.models.first().is_some_and(|model| model.set.len() >= many::LEAST_FEW) {
+        many::Many::of(&look.ground, floor.source, look.gap())
+    } else {
+        None
+    };
     let finish = Finish {
         measurements,
         floor: &floor,
@@ -194,6 +203,7 @@ pub(crate) fn search(
         look: &look,
         explored: &explored,
         alone: alone.as_ref(),
+        many: many.as_ref(),
     };
     finish.found(&bare, &fitted, context)
 }

@@ -7,6 +7,7 @@ use super::explore::{Explored, Model};
 use super::field::log_sum;
 use super::library::{Block, Library, together};
 use super::look::Look;
+use super::many::Many;
 use super::variants::UNKNOWN_CELL;
 use crate::compare::f_tail;
 use crate::finding::{ClassMember, FloorSource, FoundParameter, NamedEffect, Verdict};
@@ -86,6 +87,8 @@ pub(super) struct Named {
     pub unknown: f64,
     /// Of what is left by noise and dirt alone.
     pub p_value: f64,
+    /// Probability that everything is a little off at once, where that is more probable than these few.
+    pub many: Option<f64>,
 }
 
 /// What the search has, for naming.
@@ -95,6 +98,8 @@ pub(super) struct Evidence<'a> {
     pub explored: &'a Explored,
     /// Sets without rivals, where a rival is in the most probable one.
     pub alone: Option<&'a Explored>,
+    /// Everything at once, and how probable that is.
+    pub many: Option<(&'a Many, f64)>,
     pub floor: &'a Floor,
     /// Length of a floor on the table, m (px for eye points).
     pub floor_m: f64,
@@ -153,11 +158,15 @@ impl Evidence<'_> {
         let nameless = effects.is_empty() && self.p_bare() < VETO_P && self.look.gap() > NO_DIRT && !is_dirt;
         let unknown = unknown.max(if nameless { 0.6 } else { 0.0 });
         let unknown = unknown.max(if self.cancel_each_other(&top) { 0.95 } else { 0.0 });
+        let is_many = |(_, probability): &(&Many, f64)| *probability > 0.5 && unknown <= 0.5;
+        let many = self.many.filter(is_many).filter(|_| !effects.is_empty());
         let verdict = if unknown > 0.5 {
             Verdict::NotInLibrary
         } else if effects.is_empty() {
             Verdict::NoGap
-        } else if blocks.iter().zip(&effects).all(|(&block, effect)| self.has_one_name(block, effect)) {
+        } else if many.is_none()
+            && blocks.iter().zip(&effects).all(|(&block, effect)| self.has_one_name(block, effect))
+        {
             Verdict::Named
         } else {
             Verdict::Class
@@ -165,11 +174,18 @@ impl Evidence<'_> {
         let mut effects = effects;
         // Beside something unknown a name is less sure than it looks, be it probable or not.
         let doubt = still_right(unknown);
-        for effect in &mut effects {
+        for (effect, block) in effects.iter_mut().zip(&blocks) {
+            if let Some((many, probability)) = many {
+                let stands_out = probability * self.stands_out_of(many, *block);
+                let beside = |few: f64| (1.0 - probability) * few + stands_out;
+                effect.probability = beside(effect.probability);
+                effect.class_probability = beside(effect.class_probability);
+            }
             effect.probability *= doubt;
             effect.class_probability *= doubt;
         }
-        Named { verdict, effects, blocks, names, unknown, p_value }
+        let many = many.map(|(_, probability)| probability);
+        Named { verdict, effects, blocks, names, unknown, p_value, many }
     }
 
     /// The effects of a set that get a name, and how many others do much and get none: nothing tells what they are, or they

@@ -5,7 +5,7 @@ use crate::finding::FloorSource;
 
 /// How large an effect of these sessions is, in floors; each as probable as the others.
 const SIZES: [f64; 3] = [1.0, 3.0, LARGEST];
-pub(super) const LARGEST: f64 = 10.0;
+const LARGEST: f64 = 10.0;
 /// Where effects are so large, they may have so many usual sizes; but a noise that nothing but neighbors tell is no
 /// ground to believe more than what is usual.
 const LARGER_THAN_USUAL: f64 = 2.0;

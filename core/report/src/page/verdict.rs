@@ -14,6 +14,7 @@ pub fn title(finding: &Finding) -> String {
         Verdict::NoGap if !finding.is_all_clear() => "No name found, and the noise is not known".to_owned(),
         Verdict::NoGap => "Model and measurement agree".to_owned(),
         Verdict::Named => format!("{} found and named", count(effects, "missing effect", "missing effects")),
+        Verdict::Class if finding.many.is_some() => "Much is a little off at once".to_owned(),
         Verdict::Class => {
             let open = finding.effects.iter().filter(|effect| effect.class.len() > 1).count();
             format!(

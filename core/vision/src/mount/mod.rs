@@ -36,6 +36,7 @@ pub use error::MountError;
 pub use file::MountFileError;
 pub use localization::{Improvement, LocatedPoint, localization_improvement};
 pub use plan::{PlannedTarget, expected_sigma, plan_head_views};
+pub use report::is_included;
 pub use types::{
     Estimate, Eyes, HeadView, MountCalibration, MountChange, MountEvidence, MountOptions, Target, ViewFit,
     mount_numbers,

@@ -74,6 +74,14 @@ pub(super) fn calibration(
     })
 }
 
+/// How a remark ends on what is in the stated uncertainty already.
+const INCLUDED: &str = "the stated uncertainty includes it";
+
+/// Whether a remark is of what the stated uncertainty holds already, so that it is no doubt of that.
+pub fn is_included(remark: &str) -> bool {
+    remark.ends_with(INCLUDED)
+}
+
 /// What else the operator should know.
 fn remarks(asked: &Asked<'_>, problem: &Problem, state: &State, lenses_included: bool) -> Vec<String> {
     let Asked { rig, target, options, .. } = asked;
@@ -82,7 +90,7 @@ fn remarks(asked: &Asked<'_>, problem: &Problem, state: &State, lenses_included:
     for (joint, sd_rad) in [rig.eyes.pan, rig.eyes.tilt].into_iter().zip(problem.priors.angle_rad) {
         if sd_rad > 1.2 * stated_rad {
             remarks.push(format!(
-                "the joint \"{}\" stands ±{:.2}° from where its encoder says, more than the ±{:.2}° expected: its gears have slack, or the head had not come to rest; the stated uncertainty includes it",
+                "the joint \"{}\" stands ±{:.2}° from where its encoder says, more than the ±{:.2}° expected: its gears have slack, or the head had not come to rest; {INCLUDED}",
                 rig.joint_title(joint),
                 sd_rad.to_degrees(),
                 stated_rad.to_degrees()

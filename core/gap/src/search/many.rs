@@ -1,0 +1,175 @@
+//! Everything at once, as another explanation than a few effects.
+//!
+//! A cheap arm is a little off everywhere. The few names that explain that best are those that happen to stand for much of
+//! the rest, not those that are there. So every effect of the library at once, each as large as some share of what is
+//! usual, is weighed against the best few; where it is more probable, the few stand for it, and only those of them are sure that stand out of all the others.
+
+use nalgebra::{Cholesky, DMatrix, DVector};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+use super::explore::Explored;
+use super::field::{Framed, log_sum};
+use super::linear::Sums;
+use super::look::TEMPERATURE;
+use super::naming::Evidence;
+use super::variants::variants;
+use crate::finding::FloorSource;
+
+/// How large everything is, shares of usual sizes, each as probable as the others.
+const SHARES: [f64; 4] = [0.1, 0.2, 0.4, 0.8];
+/// How probable it is beforehand that everything is a little off, against a few things: not in doubt where it matters, so that
+/// it takes more than the evidence of one effect.
+const BEFOREHAND: f64 = 0.2;
+/// Fewer effects than this that explain it are no crowd.
+pub(super) const LEAST_FEW: usize = 2;
+/// An effect stands out of all the others where its values would come from none with less probability than this.
+const STANDS_OUT_P: f64 = 0.01;
+
+/// What evidence is made of, with the columns of what is looked through only.
+pub(super) struct Ground {
+    pub sums: Sums,
+    /// Values that the residual was taken at, usual sizes.
+    pub present: DVector<f64>,
+    /// What a usual size of each column does, in floors.
+    pub sizes: Vec<f64>,
+    /// Columns of one shape of each effect: everything at once is made of them.
+    pub dirty: Vec<bool>,
+    /// What is there at least, usual sizes.
+    pub always: Vec<f64>,
+}
+
+/// Everything at once.
+pub(super) struct Many {
+    /// Of all variants and shares, log.
+    log_evidence: f64,
+    /// Means of all columns in the most probable of them, usual sizes …
+    means: DVector<f64>,
+    /// … and their covariance.
+    covariance: DMatrix<f64>,
+}
+
+/// One way in which everything may be off.
+struct Way {
+    log: f64,
+    cell: f64,
+    noise: f64,
+    sds: DVector<f64>,
+}
+
+impl Many {
+    /// Of rows whose noise is told by `source` and whose gap is so large (floors). `None` where nothing is looked through.
+    pub fn of(ground: &Ground, source: FloorSource, gap: f64) -> Option<Self> {
+        let mut ways: Vec<Way> = vec![];
+        let mut framed: Option<(f64, Framed)> = None;
+        let mut last = None;
+        for variant in variants(source, gap) {
+            // Dirt is what everything at once is in the place of.
+            let of = (variant.noise, variant.cell, variant.size, variant.most);
+            if last == Some(of) {
+                continue;
+            }
+            last = Some(of);
+            if framed.as_ref().is_none_or(|(cell, _)| *cell != variant.cell) {
+                framed = Framed::of(&ground.sums, variant.cell * variant.cell, &ground.present)
+                    .map(|one| (variant.cell, one));
+            }
+            let Some((_, framed)) = &framed else { continue };
+            for share in SHARES {
+                let sds = ground.sds(share, variant.size, variant.most);
+                let Some(taken) = framed.dirtied(variant, &sds) else { continue };
+                let log = taken.log_evidence() + variant.log_prior - (SHARES.len() as f64).ln();
+                ways.push(Way { log, cell: variant.cell, noise: variant.noise, sds });
+            }
+        }
+        let log_evidence = log_sum(ways.iter().map(|way| way.log));
+        let best = ways.iter().max_by(|a, b| a.log.total_cmp(&b.log))?;
+        let framed = Framed::of(&ground.sums, best.cell * best.cell, &ground.present)?;
+        let (means, covariance) = best.values(&framed)?;
+        Some(Self { log_evidence, means, covariance })
+    }
+
+    /// How probable it is beside the sets that were looked through.
+    pub fn probability(&self, explored: &Explored) -> f64 {
+        let few = explored.models.iter().map(|model| model.log_score).fold(f64::NEG_INFINITY, f64::max);
+        let odds = (self.log_evidence - few) / TEMPERATURE + (BEFOREHAND / (1.0 - BEFOREHAND)).ln();
+        1.0 / (1.0 + (-odds).exp())
+    }
+
+    /// Values of columns (usual sizes) and their covariance, widened by this factor of the standard deviation.
+    fn values(&self, columns: &[usize], wider: f64) -> (DVector<f64>, DMatrix<f64>) {
+        let count = columns.len();
+        let covariance = |r: usize, c: usize| self.covariance[(columns[r], columns[c])] * wider * wider;
+        (DVector::from_fn(count, |k, _| self.means[columns[k]]), DMatrix::from_fn(count, count, covariance))
+    }
+}
+
+/// How probable it is that values stand out of what all the others may do in their place.
+fn stands_out(values: &DVector<f64>, covariance: &DMatrix<f64>) -> Option<f64> {
+    let square = values.dot(&Cholesky::new(covariance.clone())?.solve(values));
+    let by_chance = 1.0 - ChiSquared::new(values.len() as f64).ok()?.cdf(square);
+    (by_chance < STANDS_OUT_P).then_some(1.0 - by_chance)
+}
+
+impl Evidence<'_> {
+    /// How probable it is that a block does something where everything is off: zero where what others may do in its place
+    /// does not let it stand out. One that is of every site stands out as all of them together.
+    pub(super) fn stands_out_of(&self, many: &Many, block: usize) -> f64 {
+        let is_one = |other: &usize| {
+            let columns = &self.look.packed[*other];
+            let same = if self.look.blocks[block].is_family {
+                self.look.blocks[*other].kind == self.look.blocks[block].kind
+            } else {
+                self.look.blocks[*other].name == self.look.blocks[block].name
+            };
+            same && *other < self.look.effects && columns.len > 0 && self.look.ground.dirty[columns.start]
+        };
+        let ones = self.look.allowed.iter().copied().filter(is_one);
+        let columns: Vec<usize> = ones.flat_map(|one| self.look.packed[one].columns()).collect();
+        let (values, covariance) = many.values(&columns, self.look.blocks[block].wider());
+        stands_out(&values, &covariance).unwrap_or(0.0)
+    }
+}
+
+impl Ground {
+    /// Standard deviations of everything, usual sizes: a share of what an effect may be in a variant.
+    fn sds(&self, share: f64, size: f64, most: f64) -> DVector<f64> {
+        DVector::from_fn(self.sizes.len(), |c, _| {
+            let own = share / (most.powi(-2) + (self.sizes[c] / size).powi(2)).sqrt();
+            if self.dirty[c] { own.max(self.always[c]) } else { 0.0 }
+        })
+    }
+}
+
+impl Way {
+    /// Means and covariance of all columns, usual sizes; zero where nothing is.
+    fn values(&self, framed: &Framed) -> Option<(DVector<f64>, DMatrix<f64>)> {
+        let (sds, noise) = (&self.sds, self.noise.powi(-2));
+        let k = sds.len();
+        let mut normal = DMatrix::from_fn(k, k, |r, c| framed.a[(r, c)] * noise * sds[r] * sds[c]);
+        (0..k).for_each(|c| normal[(c, c)] += 1.0);
+        let normal = Cholesky::new(normal)?;
+        let b = framed.b.component_mul(sds) * noise;
+        let means = normal.solve(&b).component_mul(sds);
+        let inverse = normal.inverse();
+        Some((means, DMatrix::from_fn(k, k, |r, c| inverse[(r, c)] * sds[r] * sds[c])))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_others_may_do_in_its_place_does_not_stand_out() {
+        let stands_out = |values: [f64; 2], covariance: &DMatrix<f64>| {
+            stands_out(&DVector::from_column_slice(&values), covariance)
+        };
+        let apart = DMatrix::from_diagonal(&DVector::from_vec(vec![0.01, 0.01]));
+        assert!(stands_out([0.5, 0.1], &apart).is_some_and(|p| p > 0.99));
+        assert!(stands_out([0.1, -0.1], &apart).is_none());
+        // Two values of which only the sum is known.
+        let sum = DMatrix::from_row_slice(2, 2, &[1.0, -0.999, -0.999, 1.0]);
+        assert!(stands_out([0.5, -0.5], &sum).is_none());
+        assert!(stands_out([0.5, 0.5], &sum).is_some());
+    }
+}
