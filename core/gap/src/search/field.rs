@@ -84,13 +84,6 @@ impl Variant {
     }
 }
 
-impl Dirtied {
-    /// Evidence of nothing but noise, cells and dirt, log.
-    pub fn log_evidence(&self) -> f64 {
-        self.log_evidence
-    }
-}
-
 impl Framed {
     /// Of sums, when cells are off by this variance; `present` are values (usual sizes) that the
     /// residual was taken at, by column: they are put back.
@@ -131,13 +124,31 @@ impl Framed {
         (0..self.a.ncols()).map(|k| (self.a[(k, k)].max(0.0) / self.total).sqrt()).collect()
     }
 
+    /// Evidence of nothing but the noise of a variant, log.
+    fn bare(&self, variant: Variant) -> f64 {
+        let noise = 1.0 / (variant.noise * variant.noise);
+        -0.5 * (noise * self.square + self.logs + self.gauge * noise.ln()) - self.total * variant.noise.ln()
+    }
+
+    /// Evidence of the noise of a variant and so much of every column (standard deviation, usual sizes), log.
+    pub fn log_evidence(&self, variant: Variant, sds: &DVector<f64>) -> Option<f64> {
+        let noise = 1.0 / (variant.noise * variant.noise);
+        let there: Vec<usize> = (0..sds.len()).filter(|&c| sds[c] > 0.0).collect();
+        let mut inner = DMatrix::from_fn(there.len(), there.len(), |r, c| {
+            self.a[(there[r], there[c])] * noise * sds[there[r]] * sds[there[c]]
+        });
+        inner.fill_diagonal_add(1.0);
+        let inner = Cholesky::new(inner)?;
+        let b = DVector::from_fn(there.len(), |r, _| self.b[there[r]] * noise * sds[there[r]]);
+        Some(self.bare(variant) + 0.5 * (b.dot(&inner.solve(&b)) - inner.ln_determinant()))
+    }
+
     /// With the noise of a variant and so much of every column (standard deviation, usual sizes) taken in.
     pub fn dirtied(&self, variant: Variant, narrow: &DVector<f64>) -> Option<Dirtied> {
         let k = self.a.ncols();
         let noise = 1.0 / (variant.noise * variant.noise);
         let small: Vec<usize> = (0..k).filter(|&c| narrow[c] > 0.0).collect();
-        let mut log_evidence = -0.5 * (noise * self.square + self.logs + self.gauge * noise.ln())
-            - self.total * variant.noise.ln();
+        let mut log_evidence = self.bare(variant);
         let (mut a, mut b, mut square) = (&self.a * noise, &self.b * noise, self.square * noise);
         if !small.is_empty() {
             let half = DMatrix::from_fn(small.len(), k, |r, c| a[(small[r], c)] * narrow[small[r]]);
@@ -428,6 +439,20 @@ mod tests {
                     assert!((whole - step).abs() < 1e-8, "{one_sided:?} {pull} {base:?}: {whole} {step}");
                 }
             }
+        }
+    }
+
+    #[test]
+    fn evidence_alone_is_that_of_everything_taken_in() {
+        let a = DMatrix::from_row_slice(3, 3, &[9.0, 4.0, 2.0, 4.0, 16.0, -3.0, 2.0, -3.0, 4.0]);
+        let b = DVector::from_vec(vec![7.0, 5.0, -2.0]);
+        let framed = Framed { a, b, square: 100.0, logs: 1.5, gauge: 2.0, total: 40.0 };
+        let variant = Variant { noise: 0.7, cell: 0.0, dirt: 0.0, size: 3.0, most: 1.0, log_prior: 0.0 };
+        for sds in [[0.0; 3], [0.3, 0.0, 0.8], [0.1, 0.2, 0.4]] {
+            let sds = DVector::from_column_slice(&sds);
+            let taken = framed.dirtied(variant, &sds).expect("can be taken in").log_evidence;
+            let alone = framed.log_evidence(variant, &sds).expect("has evidence");
+            assert!((taken - alone).abs() < 1e-9, "{sds}: {taken} {alone}");
         }
     }
 

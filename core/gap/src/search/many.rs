@@ -2,7 +2,8 @@
 //!
 //! A cheap arm is a little off everywhere. The few names that explain that best are those that happen to stand for much of
 //! the rest, not those that are there. So every effect of the library at once, each as large as some share of what is
-//! usual, is weighed against the best few; where it is more probable, the few stand for it, and only those of them are sure that stand out of all the others.
+//! usual, is weighed against the best few; where it is more probable, the few stand for it, and only those of them are
+//! sure that stand out of all the others.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
@@ -17,8 +18,7 @@ use crate::finding::FloorSource;
 
 /// How large everything is, shares of usual sizes, each as probable as the others.
 const SHARES: [f64; 4] = [0.1, 0.2, 0.4, 0.8];
-/// How probable it is beforehand that everything is a little off, against a few things: not in doubt where it matters, so that
-/// it takes more than the evidence of one effect.
+/// How probable it is beforehand that everything is a little off, and not a few things.
 const BEFOREHAND: f64 = 0.2;
 /// Fewer effects than this that explain it are no crowd.
 pub(super) const LEAST_FEW: usize = 2;
@@ -61,14 +61,7 @@ impl Many {
     pub fn of(ground: &Ground, source: FloorSource, gap: f64) -> Option<Self> {
         let mut ways: Vec<Way> = vec![];
         let mut framed: Option<(f64, Framed)> = None;
-        let mut last = None;
         for variant in variants(source, gap) {
-            // Dirt is what everything at once is in the place of.
-            let of = (variant.noise, variant.cell, variant.size, variant.most);
-            if last == Some(of) {
-                continue;
-            }
-            last = Some(of);
             if framed.as_ref().is_none_or(|(cell, _)| *cell != variant.cell) {
                 framed = Framed::of(&ground.sums, variant.cell * variant.cell, &ground.present)
                     .map(|one| (variant.cell, one));
@@ -76,8 +69,8 @@ impl Many {
             let Some((_, framed)) = &framed else { continue };
             for share in SHARES {
                 let sds = ground.sds(share, variant.size, variant.most);
-                let Some(taken) = framed.dirtied(variant, &sds) else { continue };
-                let log = taken.log_evidence() + variant.log_prior - (SHARES.len() as f64).ln();
+                let Some(own) = framed.log_evidence(variant, &sds) else { continue };
+                let log = own + variant.log_prior - (SHARES.len() as f64).ln();
                 ways.push(Way { log, cell: variant.cell, noise: variant.noise, sds });
             }
         }

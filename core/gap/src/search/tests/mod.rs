@@ -49,24 +49,3 @@ fn permuted_residuals_name_nothing() {
     let confident = found.verdict != Verdict::NotInLibrary && !found.effects.is_empty();
     assert!(!confident, "{:?} {:?}", found.verdict, found.effects);
 }
-
-/// Of a robot that is off everywhere no few names are sure, and of two effects there is no crowd.
-#[test]
-fn much_that_is_a_little_off_is_told_from_two_effects() {
-    let bench = Bench::new(Plan::Plain);
-    let much = |count: usize, size: f64, seed: u64| {
-        let (measurements, floor) = bench.crowd(count, size, seed).expect("can be made");
-        search(&measurements, &floor, &options(), &Unattended).expect("enough rows")
-    };
-    let crowds: Vec<_> = (0..4).map(|seed| much(14, 2.0, seed)).collect();
-    let told = crowds.iter().filter(|found| found.many.is_some()).count();
-    assert!(told >= 2, "{:?}", crowds.iter().map(|found| (found.verdict, found.many)).collect::<Vec<_>>());
-    for found in crowds.iter().filter(|found| found.many.is_some()) {
-        assert_eq!(found.verdict, Verdict::Class);
-        assert!(found.effects.iter().any(|effect| effect.probability < 0.5), "{:?}", found.effects);
-    }
-    for seed in 10..14 {
-        let found = much(2, 3.0, seed);
-        assert_eq!(found.many, None, "{seed}: {:?}", found.effects);
-    }
-}

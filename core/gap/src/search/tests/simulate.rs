@@ -61,16 +61,6 @@ impl Bench {
         self.made(present, &mut random)
     }
 
-    /// A case with so many effects, each as large as this share (floors).
-    pub fn crowd(&self, count: usize, size: f64, seed: u64) -> Option<(Measurements, Floor)> {
-        let mut random = StdRng::seed_from_u64(seed);
-        let mut present: Vec<Present> = vec![];
-        for _ in 0..count {
-            present.extend(self.draw(size, &present, &mut random));
-        }
-        self.made(present, &mut random)
-    }
-
     /// A case with one effect of this value.
     pub fn certain(&self, id: &str, site: &str, value: f64, seed: u64) -> Option<(Measurements, Floor)> {
         let effect =
