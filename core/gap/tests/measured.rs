@@ -102,6 +102,11 @@ fn touches_of_the_real_arm() {
         .map(|effect| effect.site.as_str())
         .collect();
     assert!(early.contains(&"") && early.contains(&"r_arm_x"), "{early:?}");
+    // Much is off in this arm; early logs stand out of it, zeros do not.
+    assert!(finding.many.is_some(), "{}", finding.sentence);
+    for effect in &finding.effects {
+        assert_eq!(effect.id == "early-log", effect.probability > 0.5, "{effect:?}");
+    }
 }
 
 #[test]
@@ -109,7 +114,10 @@ fn touches_of_the_real_arm_by_commands_alone() {
     let Some(mut measurements) = session("nico-touch/touch-245") else { return };
     measurements.rows.iter_mut().for_each(|row| row.encoder_rad = None);
     let finding = found(&measurements);
-    assert_eq!(finding.verdict, Verdict::Named);
+    // Zeros of up to 6° and a shoulder that bends explain it best, and are what much that is off looks like.
+    assert_eq!(finding.verdict, Verdict::Class);
+    assert!(finding.many.is_some_and(|probability| probability > 0.9), "{}", finding.sentence);
+    assert!(finding.effects.iter().all(|effect| effect.probability < 0.5), "{:?}", finding.effects);
     assert!(finding.comparison.is_gap);
     // A least-squares placement in the plane alone leaves 6.7 mm; here heights hold the frame too.
     assert!((finding.shown.before - 6.7e-3).abs() < 1e-3, "{}", finding.shown.before);
