@@ -52,7 +52,7 @@ pub struct GapReport {
     /// Probability that much is a little off at once, where that is more probable than any few effects: those above stand
     /// for it. Left out elsewhere.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub much: Option<f64>,
+    pub many: Option<f64>,
     /// What stays.
     pub unexplained: UnexplainedReport,
     /// What of the effects the rows do not tell.
@@ -281,7 +281,7 @@ impl GapReport {
             effects: finding.effects.iter().map(EffectReport::of).collect(),
             held_out: held_out(&finding),
             partial: finding.partial,
-            much: finding.many,
+            many: finding.many,
             unexplained: UnexplainedReport {
                 p_value: finding.unexplained.p_value,
                 depends_on: finding.unexplained.depends_on.iter().map(dependence).collect(),

@@ -13,7 +13,7 @@ use crate::rig_model::{EyesLeft, tangents_per_angle};
 const LEAST_TIMES: usize = 8;
 /// What watching itself is off by for as long as it lasts, of each eye's ray, rad: in the twin's worlds it was off by 50 to
 /// 350 µrad about each axis. With this, 95 % of places lay inside the stated 95 % on the mean of seven worlds drawn for it,
-/// four of them with larger errors of more kinds: 86 to 100 % in each (`drift_corrected`).
+/// four of them with larger errors of more kinds: 87 to 100 % in each (`drift_corrected`).
 const WATCHING_RAD: f64 = 1.75e-4;
 
 impl RobotModel {

@@ -20,6 +20,7 @@ use crate::statistics::ln_not_negative;
 
 /// Dirt is at most this share of a usual size.
 const LARGEST_DIRT: f64 = 0.1;
+
 /// How noise and prior sizes are taken to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Variant {

@@ -180,6 +180,8 @@ impl Evidence<'_> {
                 let beside = |few: f64| (1.0 - probability) * few + stands_out;
                 effect.probability = beside(effect.probability);
                 effect.class_probability = beside(effect.class_probability);
+                // It is so much less probable among few only.
+                effect.runner_up = None;
             }
             effect.probability *= doubt;
             effect.class_probability *= doubt;
