@@ -131,9 +131,8 @@ fn with_servos(finding: &mut Finding, (servos, words): (Vec<NamedEffect>, Option
     // Where the finger is where the joint was sent, an encoder that stays behind has play in its drive: nothing
     // holds the joint back.
     let plays = |servo: &NamedEffect| {
-        let named = matches!(finding.verdict, Verdict::Named | Verdict::Class);
         let same = |effect: &NamedEffect| effect.id == Kind::Backlash.id() && effect.site == servo.site;
-        named && servo.id == Kind::Stiction.id() && finding.effects.iter().any(same)
+        servo.id == Kind::Stiction.id() && finding.effects.iter().any(same)
     };
     let servos: Vec<NamedEffect> = servos.into_iter().filter(|servo| !plays(servo)).collect();
     if finding.verdict == Verdict::NoGap && !servos.is_empty() {

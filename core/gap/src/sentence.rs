@@ -8,9 +8,9 @@ use plumbline_model::{counted, number, parameter_units, parameter_words};
 pub(crate) fn of(finding: &Finding) -> String {
     match finding.verdict {
         Verdict::NoGap => no_gap(finding),
+        Verdict::Named | Verdict::Class if finding.many.is_some() => much(finding),
         Verdict::Named | Verdict::Class => {
-            let mut said: Vec<String> = finding.many.iter().map(|_| MUCH.to_owned()).collect();
-            said.extend(finding.effects.iter().take(MOST_EFFECTS).map(effect));
+            let mut said: Vec<String> = finding.effects.iter().take(MOST_EFFECTS).map(effect).collect();
             said.extend(more(&finding.effects));
             said.extend(
                 finding
@@ -27,13 +27,34 @@ pub(crate) fn of(finding: &Finding) -> String {
     }
 }
 
-/// Said before the few that stand for it.
-const MUCH: &str = "Much is a little off at once: that explains the gap better than any few effects. These stand for it best; \
-     which of them are really there is not sure.";
+/// From this on a name among much that is off is said to be sure.
+const SURE: f64 = 0.8;
 /// So many effects are told, the others counted.
 const MOST_EFFECTS: usize = 3;
 /// So many of its parameters are told.
 const MOST_PARAMETERS: usize = 3;
+
+/// Where no few effects explain it: which of the names are sure, and that the others stand for what nothing tells apart.
+fn much(finding: &Finding) -> String {
+    let is_sure = |effect: &&NamedEffect| effect.probability > SURE && effect.class.len() < 2;
+    let sure: Vec<&str> =
+        finding.effects.iter().filter(is_sure).map(|effect| effect.title.as_str()).collect();
+    let rest = finding.effects.len() - sure.len();
+    let which = match (sure.is_empty(), rest) {
+        (true, _) => "None of the names is sure: they stand for what nothing tells apart.".to_owned(),
+        (false, 0) => format!("Sure: {}.", sure.join("; ")),
+        (false, 1) => {
+            format!("Sure: {}. The other name stands for what nothing tells apart.", sure.join("; "))
+        }
+        (false, _) => {
+            format!("Sure: {}. The other {rest} names stand for what nothing tells apart.", sure.join("; "))
+        }
+    };
+    format!(
+        "No few effects explain the gap: more is off than these rows tell apart. {which} {}",
+        shrink(finding)
+    )
+}
 
 /// The effects that are not told one by one.
 fn more(effects: &[NamedEffect]) -> Option<String> {

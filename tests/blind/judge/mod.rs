@@ -61,6 +61,7 @@ pub fn verdict(finding: &Finding) -> Verdict {
     Verdict {
         verdict: word.and_then(|word| word.as_str().map(str::to_owned)).unwrap_or_default(),
         effects: effects.collect(),
+        many: finding.many,
         held_out: BTreeMap::from([("closure".to_owned(), json!(finding.shown.closure))]),
         seconds: Some(finding.seconds),
     }

@@ -15,7 +15,7 @@ use crate::bench::{Bench, RIG, TIP};
 use crate::design::{Design, Planner};
 use crate::error::BlindError;
 use crate::measure::{lag_m, residual_m, sigma_m, size_sigmas};
-use crate::mix::SIZES;
+use crate::mix::{CROWD, SIZES, crowd_sigmas};
 use crate::physics::{Physics, normal};
 use crate::recipe::{Family, Recipe};
 use crate::secret::{Kind, Secret};
@@ -62,34 +62,42 @@ pub fn make(bench: &Bench, planner: &Planner<'_>, recipe: &Recipe) -> Result<Cas
     let (bare, _) = maker.tell_noise(&order, &[], &mut random)?;
     let mut secrets: Vec<Secret> = vec![];
     let mut hidden = vec![];
-    let count = match recipe.family {
-        Family::Null => 0,
-        Family::Single | Family::OffLibrary => 1,
-        Family::Pair => 2,
-        Family::Triple => 3,
-    };
     let places: Vec<usize> = (0..maker.cells.len()).step_by(maker.cells.len().div_ceil(60)).collect();
     let clean = maker.rehearse(&[], &order, &places)?;
-    for _ in 0..count {
+    for _ in 0..recipe.family.drawn() {
         let (secret, size) = maker.draw(recipe, &order, &places, &clean, &bare, &secrets, &mut random)?;
         secrets.push(secret.clone());
         hidden.push(maker.hidden(&secret, size));
+    }
+    // Of what there is much of, half of the places tell the size.
+    let few: Vec<usize> = places.iter().copied().step_by(2).collect();
+    let clean_few: Vec<Option<Met>> = clean.iter().cloned().step_by(2).collect();
+    let one_of_many = |taken: &[Secret], size: f64, random: &mut StdRng| {
+        let Some(secret) = maker.candidate(&maker.kinds(), taken, random) else { return Ok(None) };
+        let found = match maker.size(&secret, &order, &few, &clean_few, &bare) {
+            Err(BlindError::Missed { .. }) => return Ok(None),
+            found => found?,
+        };
+        let amount = secret.amount * size / found.max(1e-9);
+        Ok::<_, BlindError>((amount.abs() <= secret.kind.most()).then(|| secret.with_amount(amount)))
+    };
+    if recipe.family == Family::Crowd {
+        let wanted = random.random_range(CROWD[0]..=CROWD[1]);
+        for _ in 0..3 * DRAWS {
+            if secrets.len() < wanted {
+                let size = crowd_sigmas(&mut random);
+                let Some(secret) = one_of_many(&secrets, size, &mut random)? else { continue };
+                hidden.push(maker.hidden(&secret, size));
+                secrets.push(secret);
+            }
+        }
     }
     let mut dirt = vec![];
     if recipe.dirt {
         let [fewest, most] = maker.physics.dirt;
         for _ in 0..random.random_range(fewest..=most) {
-            let few: Vec<usize> = places.iter().copied().step_by(2).collect();
-            let clean: Vec<Option<Met>> = clean.iter().cloned().step_by(2).collect();
             let size = maker.physics.dirt_sigmas * random.random_range(0.25..1.0);
-            let all = [secrets.clone(), dirt.clone()].concat();
-            let secret = maker.candidate(&maker.kinds(), &all, &mut random);
-            let Some(secret) = secret else { continue };
-            let found = maker.size(&secret, &order, &few, &clean, &bare)?;
-            let amount = secret.amount * size / found.max(1e-9);
-            if amount.abs() <= secret.kind.most() {
-                dirt.push(secret.with_amount(amount));
-            }
+            dirt.extend(one_of_many(&[secrets.clone(), dirt.clone()].concat(), size, &mut random)?);
         }
     }
     let all = [secrets, dirt.clone()].concat();

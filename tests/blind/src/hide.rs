@@ -6,7 +6,7 @@ use rand::{Rng, SeedableRng};
 
 use crate::answer::Plan;
 use crate::error::BlindError;
-use crate::mix::SIZES;
+use crate::mix::{CROWD, SIZES, crowd_sigmas, crowds};
 use crate::recipe::Family;
 
 /// Draws before a case is given up.
@@ -122,14 +122,8 @@ pub fn hide<S: Scene>(
         kinds.iter().copied().filter(|kind| kind.shows_in(wish.plan)).collect()
     };
     let (named, nameless) = (shown(KindOf::<S>::NAMED), shown(KindOf::<S>::NAMELESS));
-    let count = match wish.family {
-        Family::Null => 0,
-        Family::Single | Family::OffLibrary => 1,
-        Family::Pair => 2,
-        Family::Triple => 3,
-    };
     let mut hidden: Vec<(S::Secret, f64)> = vec![];
-    for k in 0..count {
+    for k in 0..wish.family.drawn() {
         let kinds = match (wish.kind, wish.family) {
             (Some(kind), _) if k == 0 => vec![kind],
             (_, Family::OffLibrary) => nameless.clone(),
@@ -138,21 +132,39 @@ pub fn hide<S: Scene>(
         let taken: Vec<S::Secret> = hidden.iter().map(|(secret, _)| secret.clone()).collect();
         hidden.push(drawn(scene, &kinds, &taken, wish.size_sigmas, random)?);
     }
-    let mut dirt: Vec<S::Secret> = vec![];
-    if wish.dirt {
-        for _ in 0..random.random_range(DIRT[0]..=DIRT[1]) {
-            let taken: Vec<S::Secret> =
-                hidden.iter().map(|(secret, _)| secret.clone()).chain(dirt.iter().cloned()).collect();
-            let Some(secret) = scene.candidate(&named, &taken, random) else { continue };
-            let Some(found) = scene.size(&secret) else { continue };
-            let size = DIRT_SIGMAS * random.random_range(0.25..1.0);
-            let amount = secret.amount() * size / found.max(1e-9);
-            if amount.abs() <= secret.most() {
-                dirt.push(secret.with_amount(amount));
+    if wish.family == Family::Crowd {
+        let wanted = random.random_range(CROWD[0]..=CROWD[1]);
+        for _ in 0..DRAWS {
+            if hidden.len() < wanted {
+                hidden.extend(one_of_many(scene, &named, &hidden, random, crowd_sigmas));
             }
         }
     }
-    Ok((hidden, dirt))
+    let mut dirt: Vec<(S::Secret, f64)> = vec![];
+    if wish.dirt {
+        for _ in 0..random.random_range(DIRT[0]..=DIRT[1]) {
+            let taken = [hidden.clone(), dirt.clone()].concat();
+            let sigmas = |random: &mut StdRng| DIRT_SIGMAS * random.random_range(0.25..1.0);
+            dirt.extend(one_of_many(scene, &named, &taken, random, sigmas));
+        }
+    }
+    Ok((hidden, dirt.into_iter().map(|(secret, _)| secret).collect()))
+}
+
+/// One more beside what is there, of a size drawn last, if the arm can be off so far.
+fn one_of_many<S: Scene>(
+    scene: &S,
+    kinds: &[<S::Secret as Secret>::Kind],
+    taken: &[(S::Secret, f64)],
+    random: &mut StdRng,
+    sigmas: impl FnOnce(&mut StdRng) -> f64,
+) -> Option<(S::Secret, f64)> {
+    let taken: Vec<S::Secret> = taken.iter().map(|(secret, _)| secret.clone()).collect();
+    let secret = scene.candidate(kinds, &taken, random)?;
+    let found = scene.size(&secret)?;
+    let size = sigmas(random);
+    let amount = secret.amount() * size / found.max(1e-9);
+    (amount.abs() <= secret.most()).then(|| (secret.with_amount(amount), size))
 }
 
 /// A secret of the wanted size.
@@ -213,13 +225,14 @@ pub fn make_or_smaller<K: Kinds, Made>(
 
 /// Cases of every family: of sixty, 16 without anything hidden, 24 singles of all kinds and sizes, 10 pairs, 10 with
 /// what the library does not have. Plans take turns; dirt is in every other case, and in half of them repeats tell
-/// the noise.
+/// the noise. After them a tenth as many of robots that are a little off everywhere.
 pub fn wishes<K: Kinds>(cases: usize, seed: u64, plans: &[Plan]) -> Vec<Wish<K>> {
     let mut random = StdRng::seed_from_u64(seed);
     let (mut named, mut nameless): (Vec<K>, Vec<K>) = (vec![], vec![]);
-    (0..cases)
+    (0..cases + crowds(cases))
         .map(|number| {
             let family = match (number as f64 + 0.5) / cases as f64 {
+                _ if number >= cases => Family::Crowd,
                 s if s < 0.26 => Family::Null,
                 s if s < 0.66 => Family::Single,
                 s if s < 0.83 => Family::Pair,
@@ -228,7 +241,7 @@ pub fn wishes<K: Kinds>(cases: usize, seed: u64, plans: &[Plan]) -> Vec<Wish<K>>
             let plan = plans[number % plans.len()];
             let turn = number / plans.len();
             let size_sigmas = match family {
-                Family::Null => 0.0,
+                Family::Null | Family::Crowd => 0.0,
                 Family::Single => SIZES[turn % SIZES.len()],
                 Family::OffLibrary => [2.0, 3.0, 5.0][random.random_range(0..3)],
                 _ => [1.5, 2.0, 3.0][random.random_range(0..3)],
@@ -238,7 +251,8 @@ pub fn wishes<K: Kinds>(cases: usize, seed: u64, plans: &[Plan]) -> Vec<Wish<K>>
                 Family::OffLibrary => next(&mut nameless, K::NAMELESS, plan, &mut random),
                 _ => None,
             };
-            let (dirt, repeated) = (turn % 2 == 1, (turn / 2).is_multiple_of(2));
+            let dirt = family != Family::Crowd && turn % 2 == 1;
+            let repeated = (turn / 2).is_multiple_of(2);
             Wish { number, family, plan, dirt, repeated, size_sigmas, kind, seed: random.random() }
         })
         .collect()

@@ -20,6 +20,20 @@ pub enum Family {
     Triple,
     /// Something that the library does not have.
     OffLibrary,
+    /// A robot that is a little off everywhere: far more effects than a session tells apart.
+    Crowd,
+}
+
+impl Family {
+    /// How many effects have a size of their own.
+    pub(crate) fn drawn(self) -> usize {
+        match self {
+            Self::Null | Self::Crowd => 0,
+            Self::Single | Self::OffLibrary => 1,
+            Self::Pair => 2,
+            Self::Triple => 3,
+        }
+    }
 }
 
 /// What a case shall be.

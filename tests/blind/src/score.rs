@@ -76,6 +76,12 @@ pub struct Score {
     pub nameless_by_kind: BTreeMap<String, Share>,
     /// Nameless effects to which a confident name was given.
     pub nameless_named: Share,
+    /// Robots that are a little off everywhere: that this is so, or that something has no name, was said …
+    pub crowd_said: Share,
+    /// … a few sure names were said to be all …
+    pub crowd_named: Share,
+    /// … and a confident name was given to what is not there.
+    pub crowd_wrong: Share,
     /// Named effects in all cases that are neither hidden nor dirt.
     pub wrong_names: Share,
     /// The same, of those stated with more than 0.8.
@@ -103,7 +109,10 @@ impl Score {
     pub fn count(&mut self, answer: &Answer, verdict: &Verdict) {
         self.cases += 1;
         self.seconds.extend(verdict.seconds);
-        self.count_names(answer, verdict);
+        // A crowd has rows of its own: what is asked of it is not which name is right.
+        if answer.family != Family::Crowd {
+            self.count_names(answer, verdict);
+        }
         let plan = crate::words::word(answer.design);
         match answer.family {
             Family::Null => {
@@ -118,6 +127,15 @@ impl Score {
                 self.several.entry(key).or_default().count(&answer.hidden, verdict);
                 self.closures.extend(verdict.closure());
             }
+            Family::Crowd => {
+                let is_not_all = verdict.many.is_some() || verdict.verdict == "not-in-library";
+                self.crowd_said.count(is_not_all);
+                self.crowd_named.count(verdict.verdict == "named");
+                let right = rightness(answer, verdict);
+                let mut names = verdict.effects.iter().zip(right);
+                self.crowd_wrong
+                    .count(names.any(|(found, right)| found.probability > CONFIDENT && !right.is_among));
+            }
             Family::OffLibrary => {
                 let said = verdict.verdict == "not-in-library";
                 self.nameless.entry(plan).or_default().count(said);
@@ -131,7 +149,8 @@ impl Score {
                 self.nameless_named.count(wrong);
             }
         }
-        for hidden in answer.hidden.iter().filter(|hidden| hidden.size_sigmas >= VISIBLE) {
+        let sized = answer.hidden.iter().filter(|_| answer.family != Family::Crowd);
+        for hidden in sized.filter(|hidden| hidden.size_sigmas >= VISIBLE) {
             self.count_parameters(answer.family, hidden, verdict);
         }
     }
@@ -141,6 +160,7 @@ impl Score {
         let none = Verdict {
             verdict: "failed".to_owned(),
             effects: vec![],
+            many: None,
             held_out: BTreeMap::new(),
             seconds: None,
         };

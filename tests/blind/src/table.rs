@@ -31,6 +31,11 @@ pub fn markdown(score: &Score) -> String {
         line(&format!("not in the library, {plan}: said so"), "≥ 95 %", said);
     }
     line("not in the library: confident wrong name", "≤ 3 %", &score.nameless_named);
+    if score.crowd_said.of > 0 {
+        line("a little off everywhere: said that no few names are all", "", &score.crowd_said);
+        line("– a few sure names said to be all", "", &score.crowd_named);
+        line("– confident wrong name", "≤ 3 %", &score.crowd_wrong);
+    }
     line("all names given: wrong", "", &score.wrong_names);
     line("names stated with > 0.8: wrong", "", &score.wrong_confident);
     line("95 % intervals that hold the truth", "93–97 %", &score.coverage);

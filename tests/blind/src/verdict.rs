@@ -15,6 +15,9 @@ pub struct Verdict {
     /// Effects that were found.
     #[serde(default)]
     pub effects: Vec<Found>,
+    /// How probable it is that much is a little off, where that is told.
+    #[serde(default)]
+    pub many: Option<f64>,
     /// The gap on rows that were not used.
     #[serde(default)]
     pub held_out: BTreeMap<String, Value>,

@@ -14,7 +14,8 @@ use plumbline_blind::recipe::{Family, Recipe};
 use plumbline_blind::secret::Kind;
 use several::{all, scored, value};
 
-/// Cases: 4 without anything, 10 with one effect, 4 with two, 4 with what the library lacks.
+/// Cases: 4 without anything, 10 with one effect, 4 with two, 4 with what the library lacks, 4 that are a little off
+/// everywhere.
 fn recipes() -> Vec<Recipe> {
     let singles = [
         (Kind::JointZero, Design::Plain),
@@ -45,6 +46,8 @@ fn recipes() -> Vec<Recipe> {
     recipes.extend(singles.map(|(kind, design)| one(Family::Single, design, 2.0, Some(kind))));
     recipes.extend([None; 4].map(|kind| one(Family::Pair, Design::Rich, 2.0, kind)));
     recipes.extend(nameless.map(|kind| one(Family::OffLibrary, Design::Rich, 5.0, Some(kind))));
+    let everywhere = |design| one(Family::Crowd, design, 0.0, None);
+    recipes.extend([Design::Plain, Design::Rich].repeat(2).into_iter().map(everywhere));
     for (number, recipe) in recipes.iter_mut().enumerate() {
         (recipe.number, recipe.seed) = (number, 1900 + number as u64);
     }
@@ -66,6 +69,9 @@ fn hidden_effects_are_found_and_nothing_else() {
     let nameless = score.nameless["rich"];
     assert!(value(&nameless) >= 0.75, "not in the library: {nameless:?}");
     assert_eq!(score.nameless_named.hits, 0, "a confident name of what is in no library");
+    assert!(value(&score.crowd_said) >= 0.75, "a little off everywhere: {:?}", score.crowd_said);
+    assert_eq!(score.crowd_named.hits, 0, "a few names for what is off everywhere");
+    assert!(score.crowd_wrong.hits <= 1, "confident and wrong, off everywhere: {:?}", score.crowd_wrong);
     assert!(value(&score.wrong_confident) <= 0.1, "confident and wrong: {:?}", score.wrong_confident);
     assert!(value(&score.coverage) >= 0.9, "intervals: {:?}", score.coverage);
 }

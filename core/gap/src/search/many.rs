@@ -6,7 +6,7 @@
 //! sure that stand out of all the others.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
-use statrs::distribution::{ChiSquared, ContinuousCDF};
+use statrs::distribution::{ChiSquared, ContinuousCDF, Discrete, DiscreteCDF, Poisson};
 
 use super::explore::Explored;
 use super::field::{Framed, log_sum};
@@ -22,6 +22,11 @@ const SHARES: [f64; 4] = [0.1, 0.2, 0.4, 0.8];
 const BEFOREHAND: f64 = 0.2;
 /// Fewer effects than this that explain it are no crowd.
 pub(super) const LEAST_FEW: usize = 2;
+/// How often a robot that is off in 12 to 20 ways gets so many names, from none on (the last one: as many or more). Ninety
+/// of them, made by the physics of the blind test.
+const NAMES_OF_MANY: [f64; 7] = [0.0, 0.0, 0.03, 0.07, 0.2, 0.25, 0.45];
+/// How many effects are expected where few are off.
+const EXPECTED_OF_FEW: f64 = 1.0;
 /// An effect stands out of all the others where its values would come from none with less probability than this.
 const STANDS_OUT_P: f64 = 0.01;
 
@@ -88,6 +93,16 @@ impl Many {
         1.0 / (1.0 + (-odds).exp())
     }
 
+    /// How probable it is by the number of names alone: few effects are seldom so many, and a search that is made for few
+    /// ends before it has named a crowd.
+    pub fn probability_by_names(names: usize) -> f64 {
+        let most = NAMES_OF_MANY.len() - 1;
+        let few = Poisson::new(EXPECTED_OF_FEW)
+            .map_or(1.0, |few| if names < most { few.pmf(names as u64) } else { few.sf(most as u64 - 1) });
+        let many = BEFOREHAND * NAMES_OF_MANY[names.min(most)];
+        many / (many + (1.0 - BEFOREHAND) * few)
+    }
+
     /// Values of columns (usual sizes) and their covariance, widened by this factor of the standard deviation.
     fn values(&self, columns: &[usize], wider: f64) -> (DVector<f64>, DMatrix<f64>) {
         let count = columns.len();
@@ -96,29 +111,47 @@ impl Many {
     }
 }
 
+/// How far values are from none, for all that others may do in their place: a χ² of as many degrees of freedom.
+fn square(values: &DVector<f64>, covariance: &DMatrix<f64>) -> Option<f64> {
+    Some(values.dot(&Cholesky::new(covariance.clone())?.solve(values)))
+}
+
 /// How probable it is that values stand out of what all the others may do in their place.
 fn stands_out(values: &DVector<f64>, covariance: &DMatrix<f64>) -> Option<f64> {
-    let square = values.dot(&Cholesky::new(covariance.clone())?.solve(values));
+    let square = square(values, covariance)?;
     let by_chance = 1.0 - ChiSquared::new(values.len() as f64).ok()?.cdf(square);
     (by_chance < STANDS_OUT_P).then_some(1.0 - by_chance)
 }
 
 impl Evidence<'_> {
     /// How probable it is that a block does something where everything is off: zero where what others may do in its place
-    /// does not let it stand out. One that is of every site stands out as all of them together.
+    /// does not let it stand out. One that is of every site does so where the weaker half of its sites stands out together:
+    /// that of one site, or of two, is no matter of all.
     pub(super) fn stands_out_of(&self, many: &Many, block: usize) -> f64 {
+        let is_family = self.look.blocks[block].is_family;
         let is_one = |other: &usize| {
             let columns = &self.look.packed[*other];
-            let same = if self.look.blocks[block].is_family {
+            let same = if is_family {
                 self.look.blocks[*other].kind == self.look.blocks[block].kind
             } else {
                 self.look.blocks[*other].name == self.look.blocks[block].name
             };
             same && *other < self.look.effects && columns.len > 0 && self.look.ground.dirty[columns.start]
         };
-        let ones = self.look.allowed.iter().copied().filter(is_one);
-        let columns: Vec<usize> = ones.flat_map(|one| self.look.packed[one].columns()).collect();
-        let (values, covariance) = many.values(&columns, self.look.blocks[block].wider());
+        let wider = self.look.blocks[block].wider();
+        let columns = |ones: &[usize]| -> Vec<usize> {
+            ones.iter().flat_map(|&one| self.look.packed[one].columns()).collect()
+        };
+        let strength = |one: &usize| {
+            let (values, covariance) = many.values(&columns(&[*one]), wider);
+            square(&values, &covariance).unwrap_or(0.0) / values.len() as f64
+        };
+        let mut ones: Vec<usize> = self.look.allowed.iter().copied().filter(is_one).collect();
+        if is_family {
+            ones.sort_by(|a, b| strength(a).total_cmp(&strength(b)));
+            ones.truncate(ones.len().div_ceil(2));
+        }
+        let (values, covariance) = many.values(&columns(&ones), wider);
         stands_out(&values, &covariance).unwrap_or(0.0)
     }
 }
@@ -151,6 +184,14 @@ impl Way {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn few_names_speak_for_few_and_many_for_many() {
+        let by_names: Vec<f64> = (0..9).map(Many::probability_by_names).collect();
+        assert!(by_names[..4].iter().all(|p| *p < 0.3), "{by_names:?}");
+        assert!(by_names[5..].iter().all(|p| *p > 0.9), "{by_names:?}");
+        assert!(by_names.is_sorted(), "{by_names:?}");
+    }
 
     #[test]
     fn what_others_may_do_in_its_place_does_not_stand_out() {

@@ -28,6 +28,7 @@ mod steps;
 #[cfg(test)]
 mod tests;
 mod undetermined;
+mod unknown;
 mod variants;
 mod weights;
 
