@@ -20,13 +20,15 @@ pub(super) fn paint(
     transform: &ImageTransform,
     picture: &Picture,
     hover_px: Option<[f64; 2]>,
+    has_button: bool,
 ) {
     let corner = Rect::from_min_max(rect.min + Vec2::splat(INSET), rect.max - Vec2::splat(INSET));
     if view.caption {
         chip(ui, rect, corner.left_top(), Align2::LEFT_TOP, view.label, None);
     }
     if let Some(sentence) = view.stale.or(view.note) {
-        let below = if view.caption { 26.0 } else { 0.0 };
+        // Below its name, and below the button at the right: the sentence may need the whole width.
+        let below = if view.caption || has_button { 26.0 } else { 0.0 };
         let at = corner.left_top() + vec2(0.0, below);
         chip(ui, rect, at, Align2::LEFT_TOP, sentence, Some(Role::Warning));
     }

@@ -173,7 +173,12 @@ impl<'a> ImageView<'a> {
         let clicked_px = at_pointer(response.interact_pointer_pos().filter(|_| response.clicked()));
         response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, self.label));
         if ui.is_rect_visible(rect) {
-            self.paint(ui, rect, &transform, picture, &response, hover_px);
+            let has_button = self.crop && view.shows_part(picture.size_px()).is_some();
+            self.paint(ui, rect, &transform, picture, hover_px, has_button);
+            if response.has_focus() {
+                let ring = egui::Stroke::new(1.5, theme::tokens(ui).accent);
+                ui.painter_at(rect).rect_stroke(rect, 0.0, ring, egui::StrokeKind::Inside);
+            }
         }
         if self.crop {
             seen::button(ui, rect, self.label, view, picture.size_px());
@@ -193,8 +198,8 @@ impl<'a> ImageView<'a> {
         rect: Rect,
         transform: &ImageTransform,
         picture: &Picture,
-        response: &Response,
         hover_px: Option<[f64; 2]>,
+        has_button: bool,
     ) {
         let tokens = theme::tokens(ui);
         let painter = ui.painter_at(rect);
@@ -208,10 +213,6 @@ impl<'a> ImageView<'a> {
         if let Some(overlay) = self.overlay {
             overlay.paint(&painter, transform);
         }
-        chrome::paint(self, ui, rect, transform, picture, hover_px);
-        if response.has_focus() {
-            let ring = egui::Stroke::new(1.5, tokens.accent);
-            painter.rect_stroke(rect, 0.0, ring, egui::StrokeKind::Inside);
-        }
+        chrome::paint(self, ui, rect, transform, picture, hover_px, has_button);
     }
 }

@@ -1,9 +1,9 @@
 //! Training: from which touches, which methods, how; and how it goes.
 
-use egui::{DragValue, Ui, vec2};
+use egui::{Button, DragValue, Ui, vec2};
 use plumbline_engine::ModelsCommand;
 use plumbline_engine::view::{JobState, ModelsView};
-use plumbline_widgets::buttons::{choice, primary_button};
+use plumbline_widgets::buttons::choice;
 use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::loss_curves::{LossCurve, LossCurves, loss_legend, loss_range};
@@ -97,7 +97,12 @@ fn button(ui: &mut Ui, cx: &mut PanelContext<'_>) {
                 if matches!(models.data, Some(Err(_))) { "Choose another session.".to_owned() } else { why }
             },
         );
-    if primary_button(ui, &text, why.as_deref()).clicked() {
+    // The bottom line has what comes next; here are other choices than its own.
+    let pressed = ui.add_enabled(why.is_none(), Button::new(text).wrap()).clicked();
+    if let Some(why) = why {
+        ui.label(theme::small(ui, why));
+    }
+    if pressed {
         cx.outbox.send(ModelsCommand::Train {
             methods: chosen,
             seed: cx.state.models.seed,

@@ -62,7 +62,8 @@ fn strip(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
         ui.add_space(space::S + 4.0);
         let Some(at_m) = cx.state.robot.chosen_point_m else {
-            ui.add(egui::Label::new(theme::small(ui, hint(cx))).truncate());
+            let said = theme::small(ui, hint(cx, ui.available_width() < NARROW));
+            ui.add(egui::Label::new(said).truncate());
             return;
         };
         let narrow = ui.available_width() < NARROW;
@@ -86,8 +87,10 @@ fn strip(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     });
 }
 
-fn hint(cx: &PanelContext<'_>) -> &'static str {
+fn hint(cx: &PanelContext<'_>, narrow: bool) -> &'static str {
     match &cx.view.robot.connection {
+        Connection::Connected { .. } if narrow && cx.screen == Screen::Grasp => "Click a thing to grasp it.",
+        Connection::Connected { .. } if narrow => "Click a point to look there.",
         Connection::Connected { .. } if cx.screen == Screen::Grasp => {
             "Click a thing to grasp it, or a point to look there. Drag turns, wheel zooms."
         }

@@ -113,7 +113,9 @@ impl Evidence<'_> {
         let nameless = effects.is_empty() && self.p_bare() < VETO_P && self.look.gap() > NO_DIRT && !is_dirt;
         let unknown = unknown.max(if nameless { 0.6 } else { 0.0 });
         let unknown = unknown.max(if self.cancel_each_other(&top) { 0.95 } else { 0.0 });
-        let by_names = Many::probability_by_names(effects.len());
+        // One of every joint is more than one thing.
+        let families = blocks.iter().filter(|&&block| self.look.blocks[block].is_family).count();
+        let by_names = Many::probability_by_names(effects.len() + families);
         let many = self.many.map(|(many, by_evidence)| (many, by_evidence.max(by_names)));
         let is_many = |(_, probability): &(&Many, f64)| *probability > 0.5 && unknown <= 0.5;
         let many = many.filter(is_many).filter(|_| !effects.is_empty());
