@@ -148,3 +148,20 @@ fn places_of_the_real_eyes() {
     }
     assert!(finding.shown.after <= 7.5e-3 && mean_mm <= 7.5, "{} {mean_mm}", finding.shown.after);
 }
+
+#[test]
+fn each_joint_of_the_real_arm_that_turns_the_other_way_is_refused() {
+    let Some(measurements) = session("nico-touch/touch-245") else { return };
+    let joints = measurements.apparatuses[0].arm.as_ref().expect("an arm").len();
+    for joint in 0..joints {
+        let mut turned = measurements.clone();
+        for row in &mut turned.rows {
+            for angles in [&mut row.commanded_rad, &mut row.encoder_rad].into_iter().flatten() {
+                angles[joint] *= -1.0;
+            }
+        }
+        let error = find(&turned, &Options::default(), &Unattended).expect_err("nonsense");
+        println!("{error}");
+        assert!(error.to_string().contains("turns the other way"), "{error}");
+    }
+}

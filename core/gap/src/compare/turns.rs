@@ -4,9 +4,9 @@
 //! Every joint is tried by itself: with its angles changed, frames and the zeros of all joints fitted
 //! anew, so that a zero that is off does not look like a turn. The change is believed where it makes the
 //! rest clearly smaller, and, of a factor, where errors of usual size do not make it nearly as small: on a few
-//! lines of touches in one posture a wrong ratio of another joint and a stretched screen look like half a turn. A
-//! joint that turns the other way has to be better beside such errors, too: a screen that is a tenth too wide looks like
-//! a wrist that does.
+//! lines of touches in one posture a wrong ratio of another joint and a stretched screen look like half a turn. Where
+//! they leave clearly less, a joint that turns the other way is not believed either: a screen that is too wide, or a link of
+//! another length beside a zero, look like a wrist that does.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 use plumbline_effects::measurements::{Measurements, What};
@@ -39,8 +39,9 @@ const TRIED: [(f64, f64, Turns); 3] =
 
 /// Errors of usual size explain as much as a factor when they leave no more than so many times as much.
 const AS_WELL: f64 = 2.0;
-/// A joint that turns the other way leaves less than this share of what they leave, with them fitted to both.
-const STILL_BETTER: f64 = 0.8;
+/// They explain more than a joint that turns the other way when they leave less than this share of what that leaves, as
+/// much less as it has to leave than zeros alone.
+const CLEARLY_BETTER: f64 = 0.6;
 /// What they are: all that changes smoothly with the posture.
 const USUAL: [Kind; 5] =
     [Kind::JointScale, Kind::AxisSkew, Kind::LinkLength, Kind::TipOffset, Kind::ScreenScale];
@@ -66,7 +67,13 @@ pub fn check(measurements: &Measurements, session: usize, context: &dyn JobConte
     let mut best: Option<(f64, usize, Turns)> = None;
     for j in 0..arm.len() {
         for (factor, clearly, turns) in TRIED {
-            let with_m = self::left_m(&turned(&only, j, factor), session, context)?;
+            let mut other = only.clone();
+            for row in &mut other.rows {
+                for angles in [&mut row.commanded_rad, &mut row.encoder_rad].into_iter().flatten() {
+                    angles[j] *= factor;
+                }
+            }
+            let with_m = self::left_m(&other, session, context)?;
             if with_m < clearly * left_m && best.is_none_or(|(best_m, ..)| with_m < best_m) {
                 best = Some((with_m, j, turns));
             }
@@ -74,15 +81,8 @@ pub fn check(measurements: &Measurements, session: usize, context: &dyn JobConte
     }
     let Some((with_m, j, turns)) = best else { return Ok(()) };
     let kinds: Vec<Kind> = [Kind::JointZero].into_iter().chain(USUAL).collect();
-    let usual_m = left_with_m(&only, session, &kinds, context)?;
-    let explain_as_much = match turns {
-        Turns::TheOtherWay => {
-            let with_both_m = left_with_m(&turned(&only, j, -1.0), session, &kinds, context)?;
-            with_both_m > STILL_BETTER * usual_m
-        }
-        _ => usual_m < AS_WELL * with_m,
-    };
-    if explain_as_much {
+    let enough = if turns == Turns::TheOtherWay { CLEARLY_BETTER } else { AS_WELL };
+    if left_with_m(&only, session, &kinds, context)? < enough * with_m {
         return Ok(());
     }
     Err(GapError::OtherTurn {
@@ -92,17 +92,6 @@ pub fn check(measurements: &Measurements, session: usize, context: &dyn JobConte
         off_m: left_m,
         with_m,
     })
-}
-
-/// The same rows with the angle of a joint times a factor.
-fn turned(measurements: &Measurements, joint: usize, factor: f64) -> Measurements {
-    let mut turned = measurements.clone();
-    for row in &mut turned.rows {
-        for angles in [&mut row.commanded_rad, &mut row.encoder_rad].into_iter().flatten() {
-            angles[joint] *= factor;
-        }
-    }
-    turned
 }
 
 /// Mean length of what is left with frames and zeros fitted, m.
