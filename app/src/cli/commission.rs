@@ -54,6 +54,13 @@ fn text(report: &CommissionReport) -> String {
         mm(palm.median),
         mm(palm.to_object_median)
     ));
+    if let Some(share) = palm.within_95 {
+        text.push_str(&format!(
+            "        {} are stated for it (1σ); {:.0} % of its errors lie inside of the stated 95 %\n",
+            mm(palm.stated),
+            100.0 * share
+        ));
+    }
     let touches = &report.touch_error_mm;
     text.push_str(&format!(
         "        new touches miss by {} inside of the touched area, {} outside; by {} without corrections\n",

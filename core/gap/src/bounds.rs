@@ -1,7 +1,7 @@
 //! What may not be a name, whatever speaks for it on the rows that it was found in: what repeats contradict,
 //! what leaves most of the gap open, and what does not hold on rows that were not used.
 
-use plumbline_effects::Measurements;
+use plumbline_effects::{Assumed, Measurements};
 
 use crate::compare::{self, Compared};
 use crate::finding::{Dependence, FloorSource, Shown, Verdict};
@@ -132,7 +132,10 @@ pub(crate) fn bound_by_own_rows(found: &mut Found, used: &Measurements) {
             count += weight;
         }
     }
-    if square > ABOVE * ABOVE * count {
+    // Many small things leave more than noise does, and are nothing unknown.
+    let is_dirt = found.unexplained.p_value >= search::RIVAL_P;
+    let above = if is_dirt { 1.0_f64.hypot(search::MOST_DIRT) } else { ABOVE };
+    if square > above * above * count {
         misled(found, 0.5);
     }
 }
@@ -140,8 +143,12 @@ pub(crate) fn bound_by_own_rows(found: &mut Found, used: &Measurements) {
 /// Where repeats still depend on something that was logged, with all that was found in the model, that is
 /// not explained, and no noise.
 pub(crate) fn still_structured(found: &mut Found, used: &Measurements, compared: &Compared) {
-    let left = compare::residuals(used, &found.assumed);
-    let Some(structure) = compare::structure_of(used, &found.assumed, &left) else { return };
+    let of = |model: &Assumed| compare::structure_of(used, model, &compare::residuals(used, model));
+    let Some(structure) = of(&found.assumed) else { return };
+    // A small step is known although it is too small for a name.
+    if of(&found.probable).is_none() {
+        return;
+    }
     if structure.size_sigmas < LEAST_STRUCTURE.max(STRUCTURE_SHARE * compared.comparison.size_sigmas) {
         return;
     }

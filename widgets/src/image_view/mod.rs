@@ -210,9 +210,10 @@ impl<'a> ImageView<'a> {
         let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
         painter.image(picture.texture(ui.ctx(), sampling), transform.image_rect(), whole, dim);
         pixels::paint(&painter, transform, picture, self.value_text);
+        let captions = chrome::Captions::of(self, ui, rect, has_button);
         if let Some(overlay) = self.overlay {
-            overlay.paint(&painter, transform);
+            overlay.paint_beside(&painter, transform, &captions.rects());
         }
-        chrome::paint(self, ui, rect, transform, picture, hover_px, has_button);
+        chrome::paint(self, ui, rect, transform, picture, hover_px, captions);
     }
 }

@@ -38,6 +38,11 @@ fn ends(lit: impl Iterator<Item = usize>) -> Option<[usize; 2]> {
     lit.fold(None, |ends, at| Some(ends.map_or([at, at], |[first, _]: [usize; 2]| [first, at])))
 }
 
+/// Where the button is.
+pub(super) fn place(rect: Rect) -> Rect {
+    Rect::from_min_max(rect.right_top() + vec2(-52.0, 6.0), rect.right_top() + vec2(-6.0, 26.0))
+}
+
 /// One click shows all, and one more only where something is seen.
 pub(super) fn button(ui: &mut Ui, rect: Rect, label: &str, view: &mut ViewState, size_px: [usize; 2]) {
     let Some(part) = view.shows_part(size_px) else { return };
@@ -45,7 +50,7 @@ pub(super) fn button(ui: &mut Ui, rect: Rect, label: &str, view: &mut ViewState,
         true => ("All", "Shows the whole image, its dark borders too"),
         false => ("Fill", "Shows only where something is seen"),
     };
-    let at = Rect::from_min_max(rect.right_top() + vec2(-52.0, 6.0), rect.right_top() + vec2(-6.0, 26.0));
+    let at = place(rect);
     let mut child = ui.new_child(UiBuilder::new().id_salt((label, "all")).max_rect(at));
     let small = theme::small(&child, text);
     let button = child.put(at, Button::new(small).min_size(at.size()));

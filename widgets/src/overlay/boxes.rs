@@ -45,15 +45,15 @@ const ACROSS: f32 = 6.0;
 const ON_A_BOX: f32 = 3.0;
 
 /// Draws them all, chosen ones on top, and gives the chosen ones the first choice of a place for
-/// their words.
-pub(super) fn paint(boxes: &[LabeledBox], painter: &Painter, transform: &ImageTransform) {
+/// their words, beside what is `taken`.
+pub(super) fn paint(boxes: &[LabeledBox], painter: &Painter, transform: &ImageTransform, taken: &[Rect]) {
     let mut order: Vec<&LabeledBox> = boxes.iter().filter(|shown| !shown.outline_px.is_empty()).collect();
     order.sort_by_key(|shown| shown.emphasis != Emphasis::Chosen);
     for shown in order.iter().rev() {
         outline(shown, painter, transform);
     }
     let around: Vec<Rect> = order.iter().map(|shown| surrounding(shown, transform)).collect();
-    let mut taken: Vec<Rect> = Vec::new();
+    let mut taken = taken.to_vec();
     for (i, shown) in order.iter().enumerate() {
         words(shown, i, &around, painter, &mut taken);
     }

@@ -222,9 +222,9 @@ impl Overlay {
         self
     }
 
-    /// Draws the marks with the colors for images.
-    pub fn paint(&self, painter: &Painter, transform: &ImageTransform) {
-        paint::marks(&self.marks, painter, transform);
+    /// Draws the marks with the colors for images. Words of boxes keep off what else stands on the picture.
+    pub fn paint_beside(&self, painter: &Painter, transform: &ImageTransform, taken: &[Rect]) {
+        paint::marks(&self.marks, painter, transform, taken);
     }
 }
 

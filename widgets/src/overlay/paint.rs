@@ -9,8 +9,8 @@ use super::{Mark, PointShape};
 use crate::theme::{ON_IMAGE, RIM, Tokens, size};
 use crate::view_state::ImageTransform;
 
-pub(super) fn marks(marks: &[Mark], painter: &Painter, transform: &ImageTransform) {
-    let pen = Pen { painter, transform, tokens: &ON_IMAGE };
+pub(super) fn marks(marks: &[Mark], painter: &Painter, transform: &ImageTransform, taken: &[Rect]) {
+    let pen = Pen { painter, transform, tokens: &ON_IMAGE, taken };
     for mark in marks {
         pen.mark(mark);
     }
@@ -20,6 +20,7 @@ struct Pen<'a> {
     painter: &'a Painter,
     transform: &'a ImageTransform,
     tokens: &'static Tokens,
+    taken: &'a [Rect],
 }
 
 impl Pen<'_> {
@@ -50,7 +51,7 @@ impl Pen<'_> {
             Mark::Text { at_px, text, anchor, ink } => {
                 self.text(self.transform.to_screen(*at_px), text, *anchor, ink.color(self.tokens));
             }
-            Mark::Boxes(boxes) => super::boxes::paint(boxes, self.painter, self.transform),
+            Mark::Boxes(boxes) => super::boxes::paint(boxes, self.painter, self.transform, self.taken),
             Mark::Cells { origin_px, cell_px, columns, colors } => {
                 self.cells(*origin_px, *cell_px, *columns, colors);
             }

@@ -107,6 +107,7 @@ fn found(measurements: &Measurements, verdict: Verdict, sets: &[(&[Present], f64
             dirt_sigmas: 0.2,
             noise_scale: 1.0,
         },
+        probable: assumed.clone(),
         assumed,
         verdict,
         effects,

@@ -108,6 +108,7 @@ impl Finish<'_> {
         let candidates = knowledge::candidates(self.library, self.look, &named);
         Ok(Found {
             assumed,
+            probable: fitted.assumed.clone(),
             verdict: named.verdict,
             effects: named.effects,
             candidates,

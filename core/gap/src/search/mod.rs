@@ -47,8 +47,9 @@ use explore::Explored;
 use finish::Finish;
 use library::Library;
 use look::Look;
-pub(crate) use naming::still_right;
+pub(crate) use naming::{MOST_DIRT, still_right};
 use refit::refit;
+pub(crate) use unknown::RIVAL_P;
 
 /// Times that the model is linearized anew, at the effects found before.
 const ROUNDS: usize = 3;
@@ -64,6 +65,8 @@ const FEWEST_ROWS: usize = 8;
 pub(crate) struct Found {
     /// The effects that are in the model now, and frames fitted with them.
     pub assumed: Assumed,
+    /// The same with all of the most probable set, also what does too little to be named.
+    pub probable: Assumed,
     /// The answer in a word.
     pub verdict: Verdict,
     /// Effects found, the largest first. With [`Verdict::NotInLibrary`]: what it looks partly like.

@@ -45,7 +45,7 @@ const UNSEEN: f64 = 0.035;
 /// A gap of this size (floors) that gets no name is unexplained.
 const NO_DIRT: f64 = 0.4;
 /// Many small things that all get none are not as large as the noise itself.
-const MOST_DIRT: f64 = 1.0;
+pub(crate) const MOST_DIRT: f64 = 1.0;
 
 /// Said of a joint beside all of them: its share is less or more than theirs by what is told.
 const OTHERWISE_THAN_ALL: &str = ", by another share than the other joints (more, or with a minus less)";
@@ -169,7 +169,8 @@ impl Evidence<'_> {
             if size < least {
                 continue;
             }
-            if size > cancelling * self.look.gap() + SMALLEST {
+            // What is there alone cancels nothing.
+            if set.len() > 1 && size > cancelling * self.look.gap() + SMALLEST {
                 rest += 1;
                 continue;
             }

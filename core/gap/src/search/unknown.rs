@@ -16,7 +16,7 @@ const RIVAL_SHARE: f64 = 0.15;
 /// elsewhere against what it leaves itself.
 const RIVAL_CLOSES: f64 = 0.2;
 /// And only where the library leaves more than noise and dirt would, with this probability.
-pub(super) const RIVAL_P: f64 = 0.02;
+pub(crate) const RIVAL_P: f64 = 0.02;
 /// Lack of fit that vetoes names: probability by chance, and how much larger than noise the rest is.
 pub(super) const VETO_P: f64 = 1e-4;
 const VETO_SIZE: f64 = 0.45;
@@ -56,8 +56,9 @@ impl Evidence<'_> {
             .map(|model| model.probability)
             .sum();
         let vetoed = p_value < VETO_P && left > of_formulas.max(VETO_SIZE);
-        let unknown =
-            rival.max(softens).max(if vetoed { 0.95 } else { 0.0 }).max(self.white(of_formulas)).min(1.0);
+        // Cells are tried at a few sizes; what the best set leaves says how far they are off.
+        let white = if left > of_formulas { self.white(of_formulas) } else { 0.0 };
+        let unknown = rival.max(softens).max(if vetoed { 0.95 } else { 0.0 }).max(white).min(1.0);
         (unknown, p_value)
     }
 

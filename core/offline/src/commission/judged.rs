@@ -62,6 +62,12 @@ pub struct PalmError {
     pub to_object_median: Option<f64>,
     /// 95 % of those lie below.
     pub to_object_p95: Option<f64>,
+    /// Standard deviation of its place as the effects state it, over all axes, rms.
+    #[serde(default)]
+    pub stated: Option<f64>,
+    /// Share of the errors, along each axis by itself, inside of the stated 95 %.
+    #[serde(default)]
+    pub within_95: Option<f64>,
     /// Places that it was sent to.
     pub places: usize,
 }
@@ -73,6 +79,12 @@ pub struct TouchError {
     pub inside: Option<f64>,
     /// Outside of it.
     pub outside: Option<f64>,
+    /// Mean of the same lengths inside …
+    #[serde(default)]
+    pub inside_mean: Option<f64>,
+    /// … and outside.
+    #[serde(default)]
+    pub outside_mean: Option<f64>,
     /// Touches inside.
     pub inside_touches: usize,
     /// Touches outside.

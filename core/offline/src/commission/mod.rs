@@ -13,6 +13,7 @@ mod eyes;
 mod hand;
 mod hand_heights;
 mod judge;
+mod judge_touches;
 mod judged;
 mod known;
 pub(crate) mod lab;
@@ -177,7 +178,7 @@ fn check(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> Result<Step,
         ));
         robot.go(&lab.rig.home());
     }
-    let touched = judge::touches(lab, robot, context)?;
+    let touched = judge_touches::touches(lab, robot, context)?;
     step.before_mm = touched.uncorrected;
     step.after_mm = touched.inside;
     let file = lab.folder.join(JUDGED);
