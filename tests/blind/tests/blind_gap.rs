@@ -9,6 +9,7 @@ mod several;
 use plumbline_blind::bench::Bench;
 use plumbline_blind::case;
 use plumbline_blind::design::{Design, Planner};
+use plumbline_blind::mix::recipes as recipes_of;
 use plumbline_blind::physics::Generator;
 use plumbline_blind::recipe::{Family, Recipe};
 use plumbline_blind::secret::Kind;
@@ -74,4 +75,19 @@ fn hidden_effects_are_found_and_nothing_else() {
     assert!(score.crowd_wrong.hits <= 1, "confident and wrong, off everywhere: {:?}", score.crowd_wrong);
     assert!(value(&score.wrong_confident) <= 0.1, "confident and wrong: {:?}", score.wrong_confident);
     assert!(value(&score.coverage) >= 0.9, "intervals: {:?}", score.coverage);
+}
+
+/// A wide screen, and a link of another length beside a zero, in these two cases: a wrist that turns the other way
+/// explains them better than zeros alone do, and they explain themselves better than it does.
+#[test]
+fn errors_of_usual_size_are_refused_for_no_joint_that_turns_the_other_way() {
+    let bench = Bench::usual().expect("the rig");
+    let planner = Planner::new(&bench).expect("it reaches the screen");
+    let wide = recipes_of(Generator::Worn, 500, 2101).swap_remove(298);
+    let longer = recipes_of(Generator::Lean, 400, 3068).swap_remove(262);
+    let recipes = [wide, longer];
+    let score = scored(recipes.len(), |number| case::make_or_smaller(&bench, &planner, &recipes[number]));
+    let single = all(score.singles_visible.values().map(|naming| naming.exact));
+    let pair = all(score.several.values().map(|naming| naming.class));
+    assert_eq!((single.hits, single.of, pair.hits, pair.of), (1, 1, 1, 1));
 }
