@@ -170,6 +170,8 @@ fn misled(found: &mut Found, probability: f64) {
         effect.class_probability *= less;
     }
     found.verdict = Verdict::NotInLibrary;
+    // What something unknown does may as well be all that seemed a little off.
+    found.many = None;
 }
 
 #[cfg(test)]
