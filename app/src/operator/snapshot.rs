@@ -4,8 +4,8 @@
 /// Of correction models, and of the tables of grasp height and yaw.
 pub mod models {
     pub use plumbline_engine::models::{
-        Comparison, CorrectionModel, Errors, HeightTable, LossPoint, Method, Recipe, Repeats, TouchData,
-        YawTable, spread_of_repeats,
+        Comparison, CorrectionModel, Errors, FEWEST_FOR_A_NETWORK, HeightTable, LossPoint, Method, Recipe,
+        Repeats, TouchData, YawTable, spread_of_repeats,
     };
 }
 

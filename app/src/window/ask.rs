@@ -15,7 +15,7 @@ use super::connect::{self, ConnectChoice};
 use super::dialogs::{Answer, Question};
 use super::lerobot::LerobotAsk;
 use super::sheet::{Asked, buttons, sheet, title};
-use super::unaccepted::sheet_of_unaccepted;
+use super::unaccepted::{lost_by_closing, sheet_of_unaccepted};
 
 /// An open sheet.
 #[derive(Debug)]
@@ -95,7 +95,7 @@ impl Ask {
             Self::DeleteAll { count } => delete_all(ui, *count),
             Self::About(about) => about.show(ui),
             Self::Connect(chosen) => connect::show(ui, view, chosen),
-            Self::CloseWhileMoving => close_while_moving(ui),
+            Self::CloseWhileMoving => close_while_moving(ui, view),
             Self::CloseUnaccepted => sheet_of_unaccepted(ui, view),
             Self::LetGo => let_go(ui),
             Self::ShortenAnswers => shorten_answers(ui, view),
@@ -209,8 +209,13 @@ fn delete_all(ui: &mut Ui, count: usize) -> Asked {
     }
 }
 
-fn close_while_moving(ui: &mut Ui) -> Asked {
-    title(ui, "Close while the robot moves?", "It is stopped first and holds where it is, with torque.");
+fn close_while_moving(ui: &mut Ui, view: &View) -> Asked {
+    let held = "It is stopped first and holds where it is, with torque.";
+    let about = match lost_by_closing(view) {
+        Some(lost) => format!("{held} {lost}"),
+        None => held.to_owned(),
+    };
+    title(ui, "Close while the robot moves?", &about);
     match buttons(ui, "Stop and close", true) {
         Some(true) => Asked::HoldAndClose,
         Some(false) => Asked::Closed,

@@ -112,7 +112,13 @@ impl PlumblineWindow {
         if action == CommissionAction::Next {
             let Some(Course { screen, press: Press::Do { actions, .. }, .. }) = course(&view) else { return };
             self.commission_pressed = Some(Instant::now());
+            // From elsewhere the first press only leads to where it is said what will move.
+            let is_said =
+                matches!(self.settings.screen, Screen::Commission) || self.settings.screen == screen;
             self.settings.screen = screen;
+            if !is_said && actions.iter().any(|action| action.moves_the_robot()) {
+                return;
+            }
             actions.into_iter().for_each(|action| self.act(ctx, action));
             return;
         }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use plumbline_engine::view::{MotionState, TouchPhase, TrialsPhase};
+use plumbline_engine::view::MotionState;
 use plumbline_model::duration;
 
 use super::{
@@ -53,14 +53,7 @@ impl PlumblineWindow {
 
     /// Whether something moves, or goes on moving by itself.
     pub(super) fn moves(&self) -> bool {
-        let view = &self.view;
-        // The evaluation on a grid is none of them: only things are laid, by a person or in the twin.
-        let runs = matches!(view.touch.phase, TouchPhase::Waiting { .. } | TouchPhase::Running { .. })
-            || view.grasp.phase.moves()
-            || matches!(view.trials.phase, TrialsPhase::Running { .. })
-            || view.mount.tour.is_some()
-            || view.handeye.is_looking;
-        runs || self.may_move()
+        status_line::moves(&self.view) || self.may_move()
     }
 
     /// Esc closes what lies on top; it stops where nothing does, and always where something moves. Space

@@ -1,7 +1,7 @@
 //! The bottom line: what is happening and what to do next, with the one button that does it.
 
 use egui::{Align, Layout, Panel, Ui};
-use plumbline_engine::view::{JobState, JobView};
+use plumbline_engine::view::{JobState, JobView, MotionState, TouchPhase, TrialsPhase};
 use plumbline_engine::{JobCommand, View};
 use plumbline_widgets::buttons::accent_button;
 use plumbline_widgets::progress::{ProgressAction, ProgressLine};
@@ -63,7 +63,8 @@ fn contents(view: &View, line: Line<'_>, resting: bool, ui: &mut Ui, outbox: &mu
     if !accepts {
         next_button(view, &guidance, Look { led, resting }, ui, outbox);
     }
-    let failed = failed_job(view);
+    // What moves is not hidden behind what failed before.
+    let failed = failed_job(view).filter(|_| !moves(view));
     if let Some((job, _)) = failed
         && ui.button("Dismiss").clicked()
     {
@@ -142,6 +143,17 @@ fn next_button(view: &View, guidance: &Guidance, look: Look, ui: &mut Ui, outbox
     }
     ui.reset_style();
     ui.add_space(space::S);
+}
+
+/// Whether something moves the robot, or goes on moving it by itself.
+pub(super) fn moves(view: &View) -> bool {
+    // The evaluation on a grid is none of them: only things are laid, by a person or in the twin.
+    matches!(view.touch.phase, TouchPhase::Waiting { .. } | TouchPhase::Running { .. })
+        || view.grasp.phase.moves()
+        || matches!(view.trials.phase, TrialsPhase::Running { .. })
+        || view.mount.tour.is_some()
+        || view.handeye.is_looking
+        || matches!(view.robot.motion, MotionState::Moving { .. })
 }
 
 fn failed_job(view: &View) -> Option<(&JobView, &str)> {

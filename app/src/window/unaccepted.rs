@@ -30,10 +30,15 @@ fn are_models_open(view: &View) -> bool {
     })
 }
 
+/// The same in a sentence; `None`: nothing is lost.
+pub(super) fn lost_by_closing(view: &View) -> Option<String> {
+    let open = unaccepted(view);
+    (!open.is_empty()).then(|| format!("Solved and not accepted: {}. Closing loses that.", listed(&open)))
+}
+
 /// Asks whether to close although something was not accepted.
 pub(super) fn sheet_of_unaccepted(ui: &mut Ui, view: &View) -> Asked {
-    let about = format!("Solved and not accepted: {}. Closing loses that.", listed(&unaccepted(view)));
-    title(ui, "Close without accepting?", &about);
+    title(ui, "Close without accepting?", &lost_by_closing(view).unwrap_or_default());
     match buttons(ui, "Close all the same", true) {
         Some(true) => Asked::Close,
         Some(false) => Asked::Closed,

@@ -305,6 +305,23 @@ fn the_hands_are_looked_at_then_what_was_learned_is_accepted() {
     assert!(says(&window, "No touches to learn from were found in lab/sessions"));
 }
 
+/// The strip stands on every screen; what moves is said on the step's own.
+#[test]
+fn from_another_screen_what_moves_is_said_before_it_moves() {
+    let fake = Fake::over(at(CommissionStep::Hands));
+    let mut window = fake.window(on(Screen::Gap));
+    assert!(!says(&window, "The head turns, then each open hand is held over the table"));
+    click(&mut window, "Next: look at the hands");
+    window.run_steps(3);
+    assert_eq!(fake.take_sent(), [], "nothing moves yet");
+    assert!(says(&window, "The head turns, then each open hand is held over the table"), "it is said");
+    std::thread::sleep(std::time::Duration::from_millis(1000));
+    window.run_steps(3);
+    click(&mut window, "Next: look at the hands");
+    window.run_steps(3);
+    assert_eq!(fake.take_sent(), [Command::from(HandEyeCommand::Look)]);
+}
+
 #[test]
 fn stop_leaves_nothing_to_press() {
     let mut view = at(CommissionStep::Touches);

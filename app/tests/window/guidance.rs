@@ -7,11 +7,12 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use plumbline::{PlumblineWindow, Screen, WindowSettings};
 use plumbline_engine::view::{
-    Connection, EyesView, JobState, JobView, ReplayView, RobotView, SourceStatus, SourceView,
+    Connection, EyesView, JobState, JobView, ReplayView, RobotView, SourceStatus, SourceView, TouchPhase,
 };
 use plumbline_engine::{Command, EyesCommand, JobCommand, JobId, SourceCommand, View};
 
 use crate::fake::{Fake, click, says, shows};
+use crate::made_up_touch::{running, with_touch};
 
 fn on(screen: Screen) -> WindowSettings {
     WindowSettings { screen, ..WindowSettings::default() }
@@ -93,6 +94,23 @@ fn a_failed_job_stays_until_it_is_dismissed_and_a_done_one_does_not() {
     assert!(says(&window, "three pairs are too few"));
     click(&mut window, "Dismiss");
     assert_eq!(fake.take_sent(), [Command::from(JobCommand::Dismiss(JobId(1)))]);
+}
+
+#[test]
+fn what_failed_before_does_not_hide_what_moves() {
+    let failed = JobView {
+        id: JobId(1),
+        title: "Train M2".to_owned(),
+        state: JobState::Failed { reason: "15 touches are too few".to_owned() },
+        elapsed: std::time::Duration::from_secs(1),
+        by_itself: false,
+    };
+    let mut view = View { jobs: Arc::from([failed]), ..with_touch(running()) };
+    let window = Fake::over(view.clone()).window(on(Screen::Touch));
+    assert!(!says(&window, "15 touches are too few") && says(&window, "space stops"));
+    Arc::make_mut(&mut view.touch).phase = TouchPhase::Finished;
+    let window = Fake::over(view).window(on(Screen::Touch));
+    assert!(says(&window, "15 touches are too few"), "it is still to be read");
 }
 
 #[test]

@@ -6,13 +6,13 @@ use egui::{Pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use plumbline::{PlumblineWindow, Screen, ThemeChoice, WindowSettings};
-use plumbline_engine::models::Method;
+use plumbline_engine::models::{Method, TouchData};
 use plumbline_engine::view::{JobState, JobView, ModelError, ModelsView, StepState, TablesView};
 use plumbline_engine::{Command, GraspTable, JobId, ModelsCommand, TablesCommand, TouchCommand, View};
 
 use crate::fake::{Fake, click, click_at, says, shows};
 use crate::made_up::everything;
-use crate::made_up_models::{in_use, recorded, sessions, tables, trained, training, with};
+use crate::made_up_models::{data, in_use, recorded, screen, sessions, tables, trained, training, with};
 
 fn on_models() -> WindowSettings {
     WindowSettings { screen: Screen::Models, ..WindowSettings::default() }
@@ -79,6 +79,22 @@ fn what_was_recorded_is_trained_by_one_button() {
     press_next(&mut window, "Train M1, M2 and M3 on 80 touches");
     let all = ModelsCommand::Train { methods: Method::ALL.to_vec(), seed: 1, published_recipe: false };
     assert_eq!(models(&fake), [all]);
+}
+
+/// Fewer touches than the networks need lead back to touching; M1 alone can be trained all the same.
+#[test]
+fn too_few_touches_for_a_network_are_said_before_anything_is_trained() {
+    let some: Vec<_> = data().touches.into_iter().step_by(5).take(15).collect();
+    let few = TouchData::new(some, screen(), vec![]).expect("touches");
+    let fake = Fake::over(with(ModelsView { data: Some(Ok(Arc::new(few))), ..recorded() }));
+    let mut window = fake.window_of_size(on_models(), TALL);
+    assert!(says(&window, "15 touches are too few for M2 and M3, which need 20"));
+    click(&mut window, "M2");
+    click(&mut window, "M3");
+    click(&mut window, "Train M1 on 15 touches");
+    let m1 = ModelsCommand::Train { methods: vec![Method::M1], seed: 1, published_recipe: false };
+    assert_eq!(models(&fake), [m1]);
+    press_next(&mut window, "Go to Touch");
 }
 
 #[test]

@@ -203,12 +203,14 @@ fn closing_while_something_moves_asks_and_stops_first() {
 
 #[test]
 fn closing_asks_where_what_was_solved_would_be_lost() {
-    let open = View { models: Arc::new(made_up_models::trained()), ..moving() };
+    let trained = ModelsView { in_use: None, ..made_up_models::trained() };
+    let open = View { models: Arc::new(trained), ..moving() };
     let still = |view: View| View { robot: View::default().robot, ..view };
     let fake = Fake::over(open.clone());
     let mut window = fake.window(WindowSettings::default());
     close(&mut window);
     assert!(says(&window, "Close while the robot moves?"), "what moves comes first");
+    assert!(says(&window, "Closing loses that."), "and what is lost is said as well");
 
     let in_use = made_up_models::in_use();
     let together = made_up_models::trained().proposals;

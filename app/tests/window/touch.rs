@@ -105,6 +105,14 @@ fn a_finished_training_run_leads_to_the_models() {
 }
 
 #[test]
+fn fewer_touches_than_models_need_lead_to_the_gap() {
+    let (fake, mut window) = window(with_touch(after(14, TouchPhase::Finished)));
+    assert!(says(&window, "fewer than the 20 that M2 and M3 need"));
+    press_next(&mut window, "Go to Gap");
+    assert_eq!(sent(&fake), []);
+}
+
+#[test]
 fn touches_for_models_that_measured_the_screen_as_well_lead_to_the_models_first() {
     let proposal = Some(Arc::new(placement()));
     let finished = TouchView { placement_proposal: proposal.clone(), ..after(200, TouchPhase::Finished) };

@@ -6,7 +6,8 @@ use plumbline_engine::{Command, GraspTable, ModelsCommand, View};
 use serde::Serialize;
 
 use super::touch::{Preset, TouchAction};
-use crate::operator::snapshot::models::Method;
+use crate::operator::snapshot::models::{FEWEST_FOR_A_NETWORK, Method};
+use plumbline_widgets::format;
 
 /// Of correction models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -102,6 +103,7 @@ impl ModelsAction {
             Self::TrainAll => match &models.data {
                 None => Some("no session with touches is chosen".into()),
                 Some(Err(why)) => Some(why.to_string().into()),
+                Some(Ok(data)) if data.len() < FEWEST_FOR_A_NETWORK => Some(too_few(data.len()).into()),
                 Some(Ok(_)) => None,
             },
             Self::Accept(method) => when(is_proposed(view, method), "this model is not proposed"),
@@ -148,6 +150,14 @@ impl ModelsAction {
             .into(),
         )
     }
+}
+
+/// Why touches do for M1 alone.
+pub fn too_few(touches: usize) -> String {
+    format!(
+        "{} are too few for M2 and M3, which need {FEWEST_FOR_A_NETWORK}: touch more, or train M1 alone",
+        format::count(touches, "touch")
+    )
 }
 
 fn is_proposed(view: &View, method: Method) -> bool {

@@ -3,7 +3,9 @@
 use plumbline_engine::ExportFormat;
 use serde_json::Value;
 
-use super::{Action, GapAction, HandEyeAction, LabelsAction, ModelsAction, MountAction, TouchAction, all};
+use super::{
+    Action, GapAction, GraspAction, HandEyeAction, LabelsAction, ModelsAction, MountAction, TouchAction, all,
+};
 use crate::operator::screens::Screen;
 use crate::operator::snapshot::models::Method;
 
@@ -102,6 +104,17 @@ impl Action {
             Self::Quit => "Quit",
         }
         .to_owned()
+    }
+
+    /// Whether the robot begins to move with it.
+    pub fn moves_the_robot(self) -> bool {
+        matches!(
+            self,
+            Self::HandEye(HandEyeAction::Look)
+                | Self::Mount(MountAction::Tour)
+                | Self::Touch(TouchAction::Start | TouchAction::Resume)
+                | Self::Grasp(GraspAction::Grasp | GraspAction::Resume | GraspAction::Hand(_))
+        )
     }
 
     /// Whether it puts a proposal in use.

@@ -6,7 +6,8 @@ use plumbline_widgets::format;
 
 use super::sentence::{Guidance, say};
 use super::standing::{Standing, standing};
-use crate::operator::snapshot::models::Method;
+use crate::operator::actions::too_few;
+use crate::operator::snapshot::models::{FEWEST_FOR_A_NETWORK, Method};
 use crate::operator::{Action, ModelsAction, Screen};
 
 pub(super) fn models(view: &View) -> Guidance {
@@ -16,6 +17,9 @@ pub(super) fn models(view: &View) -> Guidance {
             .then("Go to Touch", Action::Go(Screen::Touch)),
         Standing::NotChosen => say(next_or(view, "Choose the session of touches to learn from.")),
         Standing::Unusable(why) => say(why).warn().then("Go to Touch", Action::Go(Screen::Touch)),
+        Standing::Recorded(count) if count < FEWEST_FOR_A_NETWORK => {
+            say(format!("{}.", too_few(count))).then("Go to Touch", Action::Go(Screen::Touch))
+        }
         Standing::Recorded(count) => {
             let touches = format::count(count, "touch");
             say(format!("{touches} are recorded. Next: train models on them. Nothing moves."))

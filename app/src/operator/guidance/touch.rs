@@ -10,6 +10,7 @@ use plumbline_widgets::format;
 
 use super::robot;
 use super::sentence::{Guidance, say};
+use crate::operator::snapshot::models::FEWEST_FOR_A_NETWORK;
 use crate::operator::words::proof::{Proof, Worth};
 use crate::operator::words::{capitalized, sentence};
 use crate::operator::{Action, Preset, Screen, TouchAction, is_under_way, needs_window};
@@ -162,6 +163,10 @@ fn finished(view: &View) -> Guidance {
             say(format!("{touched} of the left finger are on disk. Next: look what makes its arm miss."))
                 .then("Go to Gap", Action::Go(Screen::Gap))
         }
+        Some(Purpose::Train) | None if touch.counts.touched < FEWEST_FOR_A_NETWORK => say(format!(
+            "{touched} are on disk, fewer than the {FEWEST_FOR_A_NETWORK} that M2 and M3 need. Next: look what makes the arm miss."
+        ))
+        .then("Go to Gap", Action::Go(Screen::Gap)),
         Some(Purpose::Train) | None => say(format!("{touched} are on disk. Next: train models on them."))
             .then("Train models", Action::Go(Screen::Models)),
     }

@@ -87,7 +87,10 @@ fn button(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let why = if chosen.is_empty() {
         Some("Choose at least one model.".to_owned())
     } else {
-        let why = ModelsAction::TrainAll.refusal(cx.view);
+        // M1 alone does with fewer touches than all three.
+        let data = models.data.as_ref().and_then(|data| data.as_ref().ok());
+        let does = chosen == [Method::M1] && data.is_some() && !models.training;
+        let why = ModelsAction::TrainAll.refusal(cx.view).filter(|_| !does);
         why.map(|why| format!("{}.", crate::operator::words::capitalized(why.trim_end_matches('.'))))
     };
     // Why the session cannot be used stands below its name already.

@@ -23,6 +23,7 @@ mod workflow;
 pub use error::ModelError;
 pub use learn::options;
 pub use plumbline_correction::tables::{HeightPoint, HeightTable, YawPoint, YawTable};
+pub use plumbline_correction::train::FEWEST_FOR_A_NETWORK;
 pub use plumbline_correction::{
     Comparison, CorrectionModel, Errors, LossPoint, Method, Recipe, Repeats, Touch, TouchData, TrainOptions,
     compare, spread_of_repeats, train,

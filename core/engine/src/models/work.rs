@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use plumbline_correction::{CorrectionModel, Method, TouchData};
 use plumbline_model::robot::Rig;
+use plumbline_model::session::Touchscreen;
 use plumbline_model::{JobContext, counted};
 
 use super::error::ModelError;
@@ -206,7 +207,8 @@ impl LongWork for ModelsWork {
             }
             Self::Undo { store, history, rig } => {
                 let (history, model) = store.undo(&history).map_err(JobError::failed)?;
-                let map = model.as_ref().map(|model| Arc::new(model_map(model, &rig.touchscreen, false)));
+                let screen = screen_in_use(Some(&history), &rig);
+                let map = model.as_ref().map(|model| Arc::new(model_map(model, &screen, false)));
                 Ok(ModelsResult::InUse { history, model, map })
             }
             Self::Import { file, rig } => {
@@ -279,7 +281,7 @@ fn restore(folder: &Path, rig: &Rig) -> Restored {
     problems.extend(table_problems);
     let figures = super::tables::work::figures(&tables, rig);
     let model = model.map(|model| {
-        let map = Arc::new(model_map(&model, &rig.touchscreen, false));
+        let map = Arc::new(model_map(&model, &screen_in_use(history.as_ref(), rig), false));
         (model, map)
     });
     Restored { history, model, sessions, tables, figures, problems }
@@ -294,6 +296,14 @@ fn names(methods: &[Method]) -> String {
 }
 
 /// Where the screen lies, as it is kept with a model.
+/// The screen where it was taken to lie when the model in use was made: that is what its map shows, whatever is known
+/// of the screen by now, or not yet.
+fn screen_in_use(history: Option<&History>, rig: &Rig) -> Touchscreen {
+    let kept = history.and_then(History::in_use);
+    kept.and_then(|kept| screen::lying(&rig.touchscreen, &kept.screen_m))
+        .unwrap_or_else(|| rig.touchscreen.clone())
+}
+
 pub(super) fn screen_of(rig: &Rig) -> Corners {
     screen::corners(&rig.touchscreen)
 }

@@ -23,9 +23,10 @@ pub struct JobList {
 }
 
 impl JobList {
-    /// Adds a job that starts now.
+    /// Adds a job that starts now. That the same one failed before is said no longer.
     pub fn add(&mut self, title: String, quiet: bool) -> JobId {
         self.count += 1;
+        self.records.retain(|record| !(record.view.title == title && record.view.state.has_failed()));
         let id = JobId(self.count);
         let state = JobState::Running {
             fraction: 0.0,
@@ -114,6 +115,20 @@ mod tests {
         assert!(list.is_running(b) && !list.is_running(a));
         list.dismiss(a);
         assert_eq!(list.view().len(), 1);
+    }
+
+    #[test]
+    fn that_a_job_failed_is_said_until_the_same_one_begins_again() {
+        let mut list = JobList::default();
+        let failed = || JobState::Failed { reason: "too few".into() };
+        for title in ["train", "search"] {
+            let id = list.add(title.into(), false);
+            list.ended(id, failed(), Duration::from_secs(1));
+        }
+        list.add("train".into(), false);
+        let said: Vec<(String, bool)> =
+            list.view().iter().map(|job| (job.title.clone(), job.state.has_failed())).collect();
+        assert_eq!(said, [("search".to_owned(), true), ("train".to_owned(), false)]);
     }
 
     #[test]

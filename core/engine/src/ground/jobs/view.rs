@@ -71,4 +71,9 @@ impl JobState {
     pub fn is_running(&self) -> bool {
         matches!(self, Self::Running { .. })
     }
+
+    /// Whether it ended with what is to be read.
+    pub fn has_failed(&self) -> bool {
+        matches!(self, Self::Failed { .. } | Self::Panicked { .. })
+    }
 }

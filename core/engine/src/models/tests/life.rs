@@ -188,10 +188,31 @@ fn a_screen_that_was_placed_anew_makes_the_model_stale() {
             newest_session: None,
         })
     };
-    restore(&mut workflow, &robot);
+    restore(&mut workflow, &robot, nico());
     assert_eq!(view_on(&workflow, nico()).step, StepState::Done);
     let StepState::Stale { why } = view_on(&workflow, moved).step else { panic!("stale") };
     assert!(why.contains("5.0 mm") && why.contains("M3") && why.contains("Train again"), "{why}");
+}
+
+/// Where the screen was measured to lie is read after the models, when a program starts.
+#[test]
+fn the_map_of_a_model_is_the_same_after_a_restart_wherever_the_screen_is_taken_to_lie_by_then() {
+    let mut lab = Lab::new();
+    lab.tell(train(&[Method::M3]));
+    let before = lab.tell(ModelsCommand::Accept(Method::M3)).map.clone().expect("a map");
+    let mut moved = nico();
+    moved.touchscreen = placed(&moved.touchscreen).screen;
+    let (mut workflow, robot) = (ModelsWorkflow::new(lab.folder.path()), RobotView::default());
+    restore(&mut workflow, &robot, moved.clone());
+    let around = ModelsAround { rig: Arc::new(moved), robot: Arc::new(robot.clone()), newest_session: None };
+    let after = workflow.shown(&around).map.expect("a map");
+    assert_eq!(after.border_m.len(), before.border_m.len());
+    for (a, b) in after.screen_m.iter().zip(&before.screen_m) {
+        assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 1e-6, "{a:?} {b:?}");
+    }
+    let (now, then) = (after.mean_shift_m, before.mean_shift_m);
+    let apart_m = |a: Option<f64>, b: Option<f64>| (a.expect("inside") - b.expect("inside")).abs();
+    assert!(apart_m(now.0, then.0) < 1e-5, "{now:?} {then:?}");
 }
 
 /// The screen 5 mm farther away.
@@ -204,8 +225,8 @@ fn placed(nominal: &Touchscreen) -> ScreenPlacement {
 }
 
 /// Hands a workflow what is on disk, without the rest of the state.
-fn restore(workflow: &mut ModelsWorkflow, robot: &RobotView) {
-    let rig = Arc::new(nico());
+fn restore(workflow: &mut ModelsWorkflow, robot: &RobotView, rig: Rig) {
+    let rig = Arc::new(rig);
     let (mut notices, mut jobs, mut asked) = Default::default();
     let around = ModelsAround { rig, robot: Arc::new(robot.clone()), newest_session: None };
     let mut context = crate::models::work::Context::new(&mut notices, &mut jobs, Time::now(), &mut asked);

@@ -177,8 +177,16 @@ impl Leader {
     /// # Errors
     /// When there is nobody who could carry it out.
     pub fn order(&self, order: LeadOrder) -> Result<(), GivenUp> {
-        let gone = |_| GivenUp::Lost("the connection to the arm ended: connect again".to_owned());
-        self.orders.send_timeout(order, Duration::from_secs(2)).map_err(gone)
+        self.orders.send_timeout(order, Duration::from_secs(2)).map_err(|_| self.why_gone())
+    }
+
+    /// Why nobody is there any more, as far as it was told: who may not lead at all was told so before his first order.
+    fn why_gone(&self) -> GivenUp {
+        let told = self.answers.try_iter().filter_map(|answer| match answer {
+            LeadAnswer::GivenUp(why) => Some(why),
+            _ => None,
+        });
+        told.last().unwrap_or_else(connection_ended)
     }
 
     /// What became of it; `None` when that is not known within this time.
@@ -190,9 +198,11 @@ impl Leader {
             Ok(LeadAnswer::GivenUp(why)) => Err(why),
             Ok(answer) => Ok(Some(answer)),
             Err(RecvTimeoutError::Timeout) => Ok(None),
-            Err(RecvTimeoutError::Disconnected) => {
-                Err(GivenUp::Lost("the connection to the arm ended: connect again".to_owned()))
-            }
+            Err(RecvTimeoutError::Disconnected) => Err(connection_ended()),
         }
     }
+}
+
+fn connection_ended() -> GivenUp {
+    GivenUp::Lost("the connection to the arm ended: connect again".to_owned())
 }
