@@ -25,7 +25,7 @@ pub use grasp::GraspAction;
 pub use grid::{GridAction, USUAL_THING};
 pub use handeye::HandEyeAction;
 pub use labels::{LabelsAction, ScoresAction};
-pub use models::{ModelsAction, too_few};
+pub use models::{ModelsAction, too_few, training_refusal};
 pub use names::format_name;
 pub use robot::{MountAction, RobotAction, default_scenario};
 pub use timeline::TimelineAction;

@@ -3,11 +3,11 @@
 use std::borrow::Cow;
 
 use plumbline_engine::{Command, GraspTable, ModelsCommand, View};
+use plumbline_widgets::format;
 use serde::Serialize;
 
 use super::touch::{Preset, TouchAction};
 use crate::operator::snapshot::models::{FEWEST_FOR_A_NETWORK, Method};
-use plumbline_widgets::format;
 
 /// Of correction models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -99,13 +99,7 @@ impl ModelsAction {
         let when = |possible: bool, why| (!possible).then_some(Cow::Borrowed(why));
         match self {
             Self::ListSessions | Self::OpenSession | Self::Import | Self::ImportTable(_) => None,
-            Self::TrainAll if models.training => Some("models are being trained".into()),
-            Self::TrainAll => match &models.data {
-                None => Some("no session with touches is chosen".into()),
-                Some(Err(why)) => Some(why.to_string().into()),
-                Some(Ok(data)) if data.len() < FEWEST_FOR_A_NETWORK => Some(too_few(data.len()).into()),
-                Some(Ok(_)) => None,
-            },
+            Self::TrainAll => training_refusal(view, &Method::ALL),
             Self::Accept(method) => when(is_proposed(view, method), "this model is not proposed"),
             Self::Show(method) | Self::Export { method, .. } => {
                 let in_use = models.in_use.as_ref().is_some_and(|model| model.method() == method);
@@ -149,6 +143,22 @@ impl ModelsAction {
             }
             .into(),
         )
+    }
+}
+
+/// Why these cannot be trained now. M1 alone does with fewer touches than the others.
+pub fn training_refusal(view: &View, methods: &[Method]) -> Option<Cow<'static, str>> {
+    if view.models.training {
+        return Some("models are being trained".into());
+    }
+    let has_network = methods.iter().any(|method| *method != Method::M1);
+    match &view.models.data {
+        None => Some("no session with touches is chosen".into()),
+        Some(Err(why)) => Some(why.to_string().into()),
+        Some(Ok(data)) if has_network && data.len() < FEWEST_FOR_A_NETWORK => {
+            Some(too_few(data.len()).into())
+        }
+        Some(Ok(_)) => None,
     }
 }
 

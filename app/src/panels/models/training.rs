@@ -11,8 +11,9 @@ use plumbline_widgets::theme::{self, Role, space};
 
 use super::parts::about;
 use super::sessions;
+use crate::operator::actions::training_refusal;
 use crate::operator::snapshot::models::{LossPoint, Method};
-use crate::operator::{Action, ModelsAction, Screen};
+use crate::operator::{Action, Screen};
 use crate::panels::{PanelContext, padded};
 
 const CHART_HEIGHT: f32 = 150.0;
@@ -87,10 +88,7 @@ fn button(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let why = if chosen.is_empty() {
         Some("Choose at least one model.".to_owned())
     } else {
-        // M1 alone does with fewer touches than all three.
-        let data = models.data.as_ref().and_then(|data| data.as_ref().ok());
-        let does = chosen == [Method::M1] && data.is_some() && !models.training;
-        let why = ModelsAction::TrainAll.refusal(cx.view).filter(|_| !does);
+        let why = training_refusal(cx.view, &chosen);
         why.map(|why| format!("{}.", crate::operator::words::capitalized(why.trim_end_matches('.'))))
     };
     // Why the session cannot be used stands below its name already.
