@@ -158,7 +158,7 @@ fn robot(tiles: &mut Tiles<Pane>) -> TileId {
     let poses = tabs(tiles, &[Pane::Poses]);
     // The pad needs its height on the smallest window too: rows of joints scroll, and so do postures.
     let left = column(tiles, &[(scene, 1.0), (joints, 1.1)]);
-    let right = column(tiles, &[(jog, 2.3), (poses, 1.0)]);
+    let right = column(tiles, &[(jog, 2.8), (poses, 1.0)]);
     row(tiles, &[(left, 1.25), (right, 1.0)])
 }
 

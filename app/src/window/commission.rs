@@ -81,6 +81,7 @@ fn next(window: &PlumblineWindow, course: &Course, ui: &mut Ui, outbox: &mut Out
             let hover = format!("{}\n{keys} does the same", course.sentence);
             let resting = just_pressed.is_some() || window.commission_rest.is_on(ui.ctx());
             let button = ui.add_enabled(!resting, button).on_hover_text(hover);
+            let button = button.on_disabled_hover_text(super::rest::WHY);
             if button.clicked() {
                 outbox.act(Action::Commission(CommissionAction::Next));
             }
@@ -90,7 +91,8 @@ fn next(window: &PlumblineWindow, course: &Course, ui: &mut Ui, outbox: &mut Out
             ui.add_enabled(false, button).on_disabled_hover_text(why);
             if let Some(fraction) = fraction {
                 ui.add(ProgressBar::new(*fraction as f32).desired_width(140.0).desired_height(6.0));
-            } else {
+            } else if !window.view.robot.stopped {
+                // While STOP is latched nothing goes on.
                 ui.spinner();
             }
         }

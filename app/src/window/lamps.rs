@@ -84,12 +84,20 @@ fn folded(whole: &[f32], dot: f32, urgency: &[u8], room: f32) -> Vec<bool> {
     // The first of the most urgent ones stands last in that order.
     order.pop();
     let mut width: f32 = whole.iter().sum();
-    for i in order {
+    for &i in &order {
         if width <= room {
             break;
         }
         folded[i] = true;
         width -= whole[i] - dot;
+    }
+    // What a long one that gave way left is room for shorter ones before it.
+    for i in order.into_iter().rev() {
+        let more = whole[i] - dot;
+        if folded[i] && width + more <= room {
+            folded[i] = false;
+            width += more;
+        }
     }
     folded
 }
@@ -111,6 +119,16 @@ mod tests {
         assert_eq!(folded(&whole, 20.0, &[0, 2, 0, 3], 330.0), [false, false, true, false]);
         assert_eq!(folded(&whole, 20.0, &[0, 2, 0, 3], 250.0), [true, false, true, false]);
         assert_eq!(folded(&whole, 20.0, &[0, 2, 0, 3], 170.0), [true, true, true, false]);
+    }
+
+    #[test]
+    fn what_a_long_one_leaves_is_used_by_a_short_one() {
+        // Only both together have not enough room.
+        assert_eq!(
+            folded(&[90.0, 40.0, 200.0, 30.0], 20.0, &[0, 0, 0, 3], 200.0),
+            [false, false, true, false]
+        );
+        assert_eq!(folded(&[200.0, 40.0, 30.0], 20.0, &[0, 0, 3], 100.0), [true, false, false]);
     }
 
     #[test]

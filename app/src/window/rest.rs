@@ -3,6 +3,8 @@
 
 /// For so long, s.
 const REST_S: f64 = 0.5;
+/// Said where the pointer rests on such a button.
+pub(super) const WHY: &str = "It meant something else a moment ago: wait half a second";
 
 /// What a button means, and since when.
 pub(super) struct Rest<T> {

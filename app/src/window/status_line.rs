@@ -107,7 +107,10 @@ fn answer(asked: Option<ProgressAction>, outbox: &mut Outbox) {
 fn of_course(view: &View, screen: Screen, course: Course) -> Guidance {
     let own = guidance(view, screen);
     let of_eyes = course.screen.is_eyes() && screen.is_eyes();
-    if !of_eyes && screen != course.screen && screen != Screen::Commission {
+    let is_elsewhere = !of_eyes && screen != course.screen && screen != Screen::Commission;
+    // What would only lead on gives way to what leads.
+    let leads_on = matches!(own.next.as_ref().map(|next| next.action), Some(Action::Go(_))) && !own.warning;
+    if is_elsewhere && !leads_on {
         return own;
     }
     let holds = |action: Action| {
@@ -138,7 +141,8 @@ fn next_button(view: &View, guidance: &Guidance, look: Look, ui: &mut Ui, outbox
     ui.spacing_mut().button_padding.x = space::M;
     let button = ui.add_enabled(refusal.is_none() && !look.resting, button);
     let button = button.on_hover_text(format!("{keys} does the same"));
-    if button.on_disabled_hover_text(refusal.unwrap_or_default()).clicked() {
+    let why = refusal.unwrap_or_else(|| super::rest::WHY.into());
+    if button.on_disabled_hover_text(why).clicked() {
         outbox.act(next.action);
     }
     ui.reset_style();

@@ -305,15 +305,47 @@ fn the_hands_are_looked_at_then_what_was_learned_is_accepted() {
     assert!(says(&window, "No touches to learn from were found in lab/sessions"));
 }
 
+#[test]
+fn hands_are_not_looked_at_with_cold_eyes_unwarned() {
+    let mut view = at(CommissionStep::Hands);
+    let text = "The eyes have been on for 2 min and were calibrated after 25 min: places are off.".to_owned();
+    let gate = Gate { name: "Warmth", state: GateState::Doubtful, text };
+    Arc::make_mut(&mut view.handeye).gates = Arc::from([gate]);
+    let real = Fake::over(view.clone()).window(on(Screen::HandEye));
+    assert!(says(&real, "calibrated after 25 min: places are off. The head turns"), "before anything moves");
+    // Eyes of the twin get warm at a press.
+    Arc::make_mut(&mut view.eyes).health.colder_wait_min = Some(10.0);
+    let (label, window, sent) = press(view);
+    assert_eq!(label, "Next: warm the twin's eyes by 10 minutes");
+    assert_eq!(sent, [Command::from(TwinCommand::AdvanceWarmUp { minutes: 10.0 })]);
+    assert!(says(&window, "Warming moves nothing"));
+}
+
+/// A screen whose own next thing is elsewhere has not two things that come next.
+#[test]
+fn while_one_is_led_no_other_screen_leads_elsewhere() {
+    let led = |is_on| {
+        let mut view = at(CommissionStep::Hands);
+        Arc::make_mut(&mut view.commission).is_on = is_on;
+        let touch = made_up_touch::after(30, TouchPhase::Finished);
+        Fake::over(View { touch: Arc::new(touch), ..view }).window(on(Screen::Touch))
+    };
+    assert!(says(&led(false), "Next: train models on them"));
+    let window = led(true);
+    assert!(!says(&window, "Next: train models"));
+    assert!(says(&window, "Next: look at the hands") && says(&window, "The head turns, then each open hand"));
+}
+
 /// The strip stands on every screen; what moves is said on the step's own.
 #[test]
 fn from_another_screen_what_moves_is_said_before_it_moves() {
     let fake = Fake::over(at(CommissionStep::Hands));
-    let mut window = fake.window(on(Screen::Gap));
-    assert!(!says(&window, "The head turns, then each open hand is held over the table"));
+    let mut window = fake.window(on(Screen::Live));
+    assert!(!shows(&window, "Hands over the table"), "another screen");
     click(&mut window, "Next: look at the hands");
     window.run_steps(3);
     assert_eq!(fake.take_sent(), [], "nothing moves yet");
+    is_on(&window, "Hands over the table");
     assert!(says(&window, "The head turns, then each open hand is held over the table"), "it is said");
     std::thread::sleep(std::time::Duration::from_millis(1000));
     window.run_steps(3);

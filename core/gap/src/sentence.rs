@@ -219,11 +219,12 @@ fn beside(members: &[ClassMember]) -> String {
 fn parameter(parameter: &FoundParameter) -> Option<String> {
     let FoundParameter { name, value, low, high, .. } = parameter;
     let unit = parameter_units::of(name)?;
+    let (said, [value, low, high]) = parameter_words::directed(name, [*value, *low, *high]);
     let [value, low, high] = [value, low, high].map(|si| si * unit.per_si);
     let decimals = number::decimals(high - low);
     let size = parameter_units::with_unit(&fixed(value, decimals), Some(unit));
     let (low, high) = (fixed(low, decimals), fixed(high, decimals));
-    Some(format!("{} {size} ({low} to {high})", parameter_words::said(name)))
+    Some(format!("{said} {size} ({low} to {high})"))
 }
 
 fn fixed(value: f64, decimals: usize) -> String {
@@ -277,7 +278,8 @@ mod tests {
             (told("rot_x_rad", 0.02, 0.018, 0.022), "turned about its x axis by 1.15° (1.03 to 1.26)"),
             (told("amplitude_rad", 0.01, 0.008, 0.012), "moves by up to 0.57° (0.46 to 0.69)"),
             (told("width_rad", 0.01, 0.0, 0.02), "from side to side 0.6° (0.0 to 1.1)"),
-            (told("length_m", -4e-3, -5e-3, -3e-3), "longer by −4.0 mm (−5.0 to −3.0)"),
+            (told("length_m", -4e-3, -5e-3, -3e-3), "shorter by 4.0 mm (3.0 to 5.0)"),
+            (told("length_m", 4e-3, 3e-3, 5e-3), "longer by 4.0 mm (3.0 to 5.0)"),
             (told("r_elbow_y_offset_rad", 0.02, 0.018, 0.022), "right elbow y off by 1.15° (1.03 to 1.26)"),
             (told("scale_u", 0.02, 0.01, 0.03), "wider by 2.0 % (1.0 to 3.0)"),
         ];

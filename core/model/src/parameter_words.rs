@@ -73,6 +73,31 @@ pub fn said(name: &str) -> String {
     with_site(name, |(_, said, _)| (*said).to_owned(), |along| format!("shifted {along} by"))
 }
 
+/// What is said before a size, and the size with its interval (value, low, high) as it is said then: what is longer by
+/// less than nothing is shorter.
+pub fn directed(name: &str, [value, low, high]: [f64; 3]) -> (String, [f64; 3]) {
+    match said_below_zero(name).filter(|_| value < 0.0) {
+        Some(said) => (said, [-value, -high, -low]),
+        None => (said(name), [value, low, high]),
+    }
+}
+
+/// What is said before a size below zero without its sign; `None`: the sign stands with the number.
+fn said_below_zero(name: &str) -> Option<String> {
+    let said = said(name);
+    BELOW_ZERO.iter().find_map(|(above, below)| Some(format!("{}{below}", said.strip_suffix(above)?)))
+}
+
+/// What is said of a size above zero, and below.
+const BELOW_ZERO: [(&str, &str); 6] = [
+    ("longer by", "shorter by"),
+    ("heavier by", "lighter by"),
+    ("wider by", "narrower by"),
+    ("higher by", "lower by"),
+    ("too large by", "too small by"),
+    ("late by", "early by"),
+];
+
 /// What a parameter is called inside of a sentence: "zero", "turn about its x axis".
 pub fn called(name: &str) -> String {
     with_site(name, |(_, _, called)| (*called).to_owned(), |along| format!("shift {along}"))

@@ -15,13 +15,19 @@ const DEGREES: f64 = 180.0 / std::f64::consts::PI;
 
 /// A parameter with its interval, `offset 1.78 ± 0.17°`; the name only where there are several.
 pub fn with_interval(found: &FoundParameter, named: bool) -> String {
-    let (name, unit) = (parameter_words::said(&found.name), parameter_units::of(&found.name));
+    let unit = parameter_units::of(&found.name);
+    let as_it_is = [found.value, found.low, found.high];
+    // Without its word a size keeps its sign.
+    let (name, sizes) = match named {
+        true => parameter_words::directed(&found.name, as_it_is),
+        false => (parameter_words::said(&found.name), as_it_is),
+    };
     let label = if named { format!("{name} ") } else { String::new() };
     if let Some(text) = &found.text {
         return format!("{name} {}", parameter_words::place(text));
     }
     let per_si = unit.map_or(1.0, |unit| unit.per_si);
-    let [value, low, high] = [found.value, found.low, found.high].map(|value| value * per_si);
+    let [value, low, high] = sizes.map(|value| value * per_si);
     let with_unit = |number: String| parameter_units::with_unit(&number, unit);
     if !(low.is_finite() && high.is_finite()) {
         return format!("{label}{} (interval not known)", with_unit(significant(value, 3)));

@@ -7,7 +7,7 @@ use plumbline_widgets::format;
 use super::sentence::{Guidance, say};
 use crate::operator::snapshot::gap::Verdict;
 use crate::operator::words::gap::{add_label, touch_label};
-use crate::operator::words::proof::{Proof, Worth};
+use crate::operator::words::proof::{Proof, Worth, proven_before};
 use crate::operator::{Action, GapAction, Screen};
 
 /// Below this the experiment goes before adding.
@@ -72,6 +72,9 @@ fn found(view: &View, shown: &ShownFinding) -> Guidance {
 fn added(view: &View, shown: &ShownFinding, experiment: bool) -> Guidance {
     if let Some(proof) = Proof::of_model(view) {
         return proven(&proof);
+    }
+    if let Some(before) = proven_before(view) {
+        return say(before).then("Find what is left", Action::Gap(GapAction::Find));
     }
     let closed = shown.finding.shown.closure.map_or_else(String::new, |closure| {
         format!(" On held-out rows {} of the gap is closed.", format::percent(closure))

@@ -5,7 +5,7 @@ use plumbline_engine::view::HandEyeSummary;
 use plumbline_widgets::format;
 
 use super::sentence::{Guidance, say};
-use crate::operator::{Action, HandEyeAction, Screen};
+use crate::operator::{Action, HandEyeAction, RobotAction, Screen};
 
 /// What moves, before it is pressed.
 const MOVES: &str = "Clear the table. The head turns, then each open hand is held over it at 12 places: 3 min, nothing is touched.";
@@ -36,6 +36,9 @@ pub(super) fn handeye(view: &View) -> Guidance {
     }
     let look = Action::HandEye(HandEyeAction::Look);
     let moves = if view.twin.running { MOVES_OF_THE_TWIN } else { MOVES };
+    if let Some(why) = handeye.doubt() {
+        return doubtful(view, why, moves);
+    }
     match (&handeye.stale, &handeye.in_use) {
         (Some(why), _) => say(format!("{why} {moves}")).warn().then("Look again", look),
         (None, Some(_)) => {
@@ -44,6 +47,16 @@ pub(super) fn handeye(view: &View) -> Guidance {
         }
         (None, None) => say(moves).then(HandEyeAction::Look.label(), look),
     }
+}
+
+/// What speaks against looking now goes first. Eyes of a twin get warm at a press.
+fn doubtful(view: &View, why: &str, moves: &str) -> Guidance {
+    if view.twin.running && view.eyes.health.colder_wait_min.is_some() {
+        let warm = RobotAction::WarmUp;
+        return say(format!("{why} Warming moves nothing.")).warn().then(warm.label(), Action::Robot(warm));
+    }
+    let label = if view.handeye.in_use.is_some() { "Look again" } else { HandEyeAction::Look.label() };
+    say(format!("{why} {moves}")).warn().then(label, Action::HandEye(HandEyeAction::Look))
 }
 
 /// What came of a look, in a sentence.

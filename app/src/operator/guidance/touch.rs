@@ -11,7 +11,7 @@ use plumbline_widgets::format;
 use super::robot;
 use super::sentence::{Guidance, say};
 use crate::operator::snapshot::models::FEWEST_FOR_A_NETWORK;
-use crate::operator::words::proof::{Proof, Worth};
+use crate::operator::words::proof::{Proof, Worth, model_was_better};
 use crate::operator::words::{capitalized, sentence};
 use crate::operator::{Action, Preset, Screen, TouchAction, is_under_way, needs_window};
 
@@ -51,8 +51,20 @@ fn standing(view: &View) -> Guidance {
 fn running(touch: &TouchView, doing: &str) -> Guidance {
     let (done, wanted) = (done_of(touch.counts), wanted(touch.counts));
     let left = touch.remaining.map_or_else(String::new, |left| format!(" {}.", format::time_left(left)));
-    say(format!("{done} of {wanted} done. The arm is {doing}.{left} Esc or space stops."))
+    let held = held(touch.held);
+    say(format!("{done} of {wanted} done. The arm is {doing}.{left} Esc or space stops.{held}"))
         .then("Pause", Action::Touch(TouchAction::Pause))
+}
+
+/// That the arm stood still by itself, and why: " It held 3 times because …"; empty where it did not.
+pub(super) fn held(times: usize) -> String {
+    match times {
+        0 => String::new(),
+        times => format!(
+            " It held {} because this computer was too busy to hear the joints, and went on by itself.",
+            if times == 1 { "once".to_owned() } else { format!("{times} times") }
+        ),
+    }
 }
 
 fn waiting(what: &str, prepare: bool) -> Guidance {
@@ -143,10 +155,15 @@ fn finished(view: &View) -> Guidance {
     if is_screen_to_be_decided(touch, purpose)
         && let Some(place) = &touch.placement_proposal
     {
-        return say(measured(place))
-            .then("Use this place of the screen", Action::Touch(TouchAction::AcceptScreen));
+        let said = measured(place);
+        let guidance = match touch.proposal_is_older {
+            true => say(format!("By an earlier run than the one shown: {said}")).warn(),
+            false => say(said),
+        };
+        return guidance.then("Use this place of the screen", Action::Touch(TouchAction::AcceptScreen));
     }
     let touched = format::count(touch.counts.touched, "touch");
+    let held = held(touch.held);
     let finger = touch.plan.as_ref().map(|plan| plan.options.finger);
     match purpose {
         Some(Purpose::PlaceScreen) if touch.placement.is_none() => {
@@ -167,7 +184,7 @@ fn finished(view: &View) -> Guidance {
             "{touched} are on disk, fewer than the {FEWEST_FOR_A_NETWORK} that M2 and M3 need. Next: look what makes the arm miss."
         ))
         .then("Go to Gap", Action::Go(Screen::Gap)),
-        Some(Purpose::Train) | None => say(format!("{touched} are on disk. Next: train models on them."))
+        Some(Purpose::Train) | None => say(format!("{touched} are on disk.{held} Next: train models on them."))
             .then("Train models", Action::Go(Screen::Models)),
     }
 }
@@ -199,7 +216,9 @@ fn checked(view: &View, touched: &str) -> Guidance {
             .then("Plan new targets", again);
     };
     if let Some(proof) = Proof::of_run(touch) {
-        let said = format!("{} {} It stands on the timeline.", proof.headline(), proof.figures());
+        let better = model_was_better(view, proof.with_m());
+        let better = better.map_or_else(String::new, |better| format!(" {better}"));
+        let said = format!("{} {} It stands on the timeline.{better}", proof.headline(), proof.figures());
         return match proof.worth() {
             Worth::Help => say(format!("{said} Next: grasp.")).then("Go to Grasp", Action::Go(Screen::Grasp)),
             Worth::Untold => say(said).then("Go to Gap", Action::Go(Screen::Gap)),

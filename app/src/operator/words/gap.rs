@@ -63,6 +63,12 @@ pub fn heading(finding: &Finding) -> &'static str {
     }
 }
 
+/// Whether something outside of the names that were found may be at work: they are less sure than the names of the
+/// library are among themselves.
+pub fn is_unsure(finding: &Finding) -> bool {
+    finding.verdict == Verdict::NotInLibrary || finding.many.is_some()
+}
+
 /// Whether there is a gap, in a sentence.
 pub fn is_there_a_gap(finding: &Finding) -> &'static str {
     let comparison = &finding.comparison;

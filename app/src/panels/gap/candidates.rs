@@ -35,6 +35,11 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             ui.label(theme::weak(ui, "Sorted by"));
             choice(ui, "Sorted by", &mut cx.state.gap.sort, &options);
         });
+        if words::is_unsure(&shown.finding) {
+            let text = "The probability here is among the names of the library alone. On the cards it also counts that \
+                        something else may be at work.";
+            ui.label(theme::small(ui, text));
+        }
         match cx.state.gap.sort {
             Sort::Probability => candidates.sort_by(|a, b| b.probability.total_cmp(&a.probability)),
             Sort::Score => candidates.sort_by(|a, b| b.score_sigmas.abs().total_cmp(&a.score_sigmas.abs())),

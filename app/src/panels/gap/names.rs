@@ -14,7 +14,7 @@ use crate::operator::guidance::guidance;
 use crate::operator::snapshot::gap::{Finding, NamedEffect, Verdict};
 use crate::operator::words::effect::runner_up;
 use crate::operator::words::gap as words;
-use crate::operator::words::proof::{Proof, Worth};
+use crate::operator::words::proof::{Proof, Worth, proven_before};
 use crate::operator::words::sentence;
 use crate::operator::{Action, GapAction, Screen};
 use crate::panels::parts::{action_button, undo_button};
@@ -40,7 +40,13 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
 
 /// What touches with the effects and without them say of those in use: more than any finding.
 fn proven(ui: &mut Ui, view: &View) {
-    let Some(proof) = Proof::of_model(view) else { return };
+    let Some(proof) = Proof::of_model(view) else {
+        if let Some(before) = proven_before(view) {
+            line(ui, Glyph::Check, Role::Accepted, &before);
+            ui.add_space(space::S);
+        }
+        return;
+    };
     let (sign, role) = match proof.worth() {
         Worth::Help => (Glyph::Check, Role::Accepted),
         Worth::Untold => (Glyph::Info, Role::Ink),
@@ -48,6 +54,10 @@ fn proven(ui: &mut Ui, view: &View) {
     };
     line(ui, sign, role, &proof.headline());
     ui.label(theme::small(ui, proof.figures()));
+    let closure = view.gap.finding().and_then(|finding| finding.shown.closure);
+    if let Some(why) = proof.beside_held_out(closure) {
+        ui.label(theme::small(ui, why));
+    }
     ui.add_space(space::S);
 }
 

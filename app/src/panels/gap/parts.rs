@@ -46,7 +46,10 @@ pub fn state(ui: &mut Ui, view: &View) {
         ui.horizontal(|ui| {
             ui.spinner();
             let percent = plumbline_widgets::format::percent(fraction);
-            let said = format!("Looking again: {doing} ({percent}). Below is the finding before.");
+            let said = match view.gap.shown.is_some() {
+                true => format!("Looking again: {doing} ({percent}). Below is the finding before."),
+                false => format!("Looking for the gap: {doing} ({percent})."),
+            };
             ui.add(Label::new(theme::weak(ui, said)).wrap());
         });
     } else if let Some(why) = &view.gap.failed {

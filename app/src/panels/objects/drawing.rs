@@ -105,7 +105,7 @@ fn labeled(
     };
     let mut text = format!("{} {:.2}", class_words(&object.name), seen.confidence);
     if object.leak.is_some() {
-        text.push_str(" · leak");
+        text.push_str(" · depth doubtful");
     }
     let dashed = !object.in_both() || view.detect.stale.is_some();
     LabeledBox { outline_px, text, color: color(object), emphasis, dashed }

@@ -107,9 +107,16 @@ fn chosen_joint(ui: &mut Ui, robot: &RobotView, joint: &JointView, outbox: &mut 
     ui.add_space(space::S);
     let limp = joint.torque_on == Some(false);
     let text = if limp { "Hold this joint" } else { "Let this joint go limp" };
-    let possible = robot.connection.is_connected() && joint.torque_on.is_some() && !(limp && robot.stopped);
+    let why = if !robot.connection.is_connected() {
+        Some("No robot is connected")
+    } else if joint.torque_on.is_none() {
+        Some("Its servo was not heard yet: it is not known whether it holds")
+    } else {
+        (limp && robot.stopped).then_some("STOP is latched: release it first")
+    };
     let hover = if limp { "It holds where it is" } else { "It sinks by its own weight: hold it by hand" };
-    if ui.add_enabled(possible, Button::new(text)).on_hover_text(hover).clicked() {
+    let button = ui.add_enabled(why.is_none(), Button::new(text)).on_hover_text(hover);
+    if button.on_disabled_hover_text(why.unwrap_or_default()).clicked() {
         outbox.send(RobotCommand::Torque { joints: vec![joint.joint], on: limp });
     }
 }

@@ -74,7 +74,8 @@ fn buttons(ui: &mut Ui, view: &View, one: &TouchState, outbox: &mut Outbox) {
     let number = one.number;
     let begun = is_under_way(&view.touch.phase) || view.touch.phase == TouchPhase::Finished;
     let mut button = |ui: &mut Ui, text: String, hover: &str, command: TouchCommand| {
-        if ui.add_enabled(begun, egui::Button::new(text)).on_hover_text(hover).clicked() {
+        let button = ui.add_enabled(begun, egui::Button::new(text)).on_hover_text(hover);
+        if button.on_disabled_hover_text("The run was not begun yet").clicked() {
             outbox.send(command);
         }
     };

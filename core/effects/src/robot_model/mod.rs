@@ -16,6 +16,9 @@ mod unmeasured;
 mod unmeasured_laws;
 #[cfg(test)]
 mod warm_laws;
+mod warming;
+#[cfg(test)]
+mod warming_laws;
 
 use std::sync::Arc;
 
@@ -32,6 +35,7 @@ pub use mounted::Mounted;
 pub use place::{PlaceInRobot, SeenUnder, worst_sigma_m};
 use unmeasured::Prior;
 pub use unmeasured::Unmeasured;
+pub use warming::{Turned, WARMING_S, warm_share};
 
 /// The robot as it is known now: its description with what was calibrated (lenses, mount of the
 /// eyes, place of the screen), and the effects that were accepted. Cheap to clone.

@@ -30,10 +30,10 @@ pub struct PlaceInRobot {
     /// Robot frame.
     pub point: Point<Robot>,
     /// Covariance in the robot's axes, m²: that of what was seen, that of the effects' values with what they
-    /// leave of the rows that they were found in, and that of mount and lenses, or how far those usually are off where
-    /// nobody measured them.
+    /// leave of the rows that they were found in, that of mount and lenses, or how far those usually are off where
+    /// nobody measured them, and how far eyes usually have turned since they were calibrated colder or warmer.
     pub covariance_m2: Matrix3<f64>,
-    /// The part of it by the mount of the eyes, m²: it moves all that is seen alike, and nothing nearer to the eyes or
+    /// The part of it by how both eyes sit in the head, m²: it moves all that is seen alike, and nothing nearer to the eyes or
     /// farther away.
     pub by_mount_m2: Matrix3<f64>,
 }
@@ -103,8 +103,11 @@ impl RobotModel {
         let by_mount_m2 = mounted.map(|mounted| mounted.covariance_m2(&self.rig, posture, &seen_at));
         let by_lenses_m2 = lenses.map(|lenses| lenses.covariance_m2(&self.rig.eyes.cameras, &seen_at));
         let [by_mount_m2, by_lenses_m2] = [by_mount_m2, by_lenses_m2].map(Option::unwrap_or_default);
+        let turned = self.turned_since(seen).covariances_m2(&self.rig.eyes.cameras, &seen_at);
+        let turn = robot_from_left.rotation();
+        let by_lenses_m2 = by_lenses_m2 + turned[0];
+        let by_mount_m2 = by_mount_m2 + turn * turned[1] * turn.transpose();
         if self.of_eyes.present.is_empty() {
-            let turn = robot_from_left.rotation();
             let covariance_m2 = turn * (covariance_m2 + by_lenses_m2) * turn.transpose() + by_mount_m2;
             return Some(PlaceInRobot { point: robot_from_left * *in_left, covariance_m2, by_mount_m2 });
         }

@@ -112,9 +112,7 @@ impl Lenses {
     pub fn covariance_m2(&self, cameras: &StereoCameras, in_left_m: &Vector3<f64>) -> Matrix3<f64> {
         let depth_m = in_left_m.z;
         let (focal_px, _) = cameras.right.model.focal_px();
-        let disparity_rad = self.yaw_rad.hypot(self.shift_px / focal_px)
-            * tangents_per_angle(in_left_m.x / depth_m, in_left_m.y / depth_m);
-        let by_disparity = in_left_m * (disparity_rad * depth_m / cameras.baseline_m());
+        let by_disparity = turned_sideways(self.yaw_rad.hypot(self.shift_px / focal_px), cameras, in_left_m);
         let by_baseline = in_left_m * self.baseline;
         // Both directions and disparity grow with the focal length: what is beside the axis stays there.
         let by_focal = Vector3::z() * (depth_m * self.focal);
@@ -122,8 +120,19 @@ impl Lenses {
     }
 }
 
+/// How far a place (left camera, m) moves as the right eye turns to the side, m.
+pub(super) fn turned_sideways(
+    yaw_rad: f64,
+    cameras: &StereoCameras,
+    in_left_m: &Vector3<f64>,
+) -> Vector3<f64> {
+    let depth_m = in_left_m.z;
+    let disparity_rad = yaw_rad * tangents_per_angle(in_left_m.x / depth_m, in_left_m.y / depth_m);
+    in_left_m * (disparity_rad * depth_m / cameras.baseline_m())
+}
+
 /// Usual size of a parameter.
-fn typical(kind: Kind, name: &str) -> f64 {
+pub(super) fn typical(kind: Kind, name: &str) -> f64 {
     let mut parameters = kind.parameters().iter();
     parameters.find(|parameter| parameter.name == name).expect("a parameter of the library").typical
 }

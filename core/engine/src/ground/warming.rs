@@ -1,9 +1,8 @@
 //! Whether the eyes are as warm as when they were calibrated: lenses turn in their mounts while they get
 //! warm.
 
-/// Housings of eyes reach their temperature with about this time constant, min: twenty minutes are 95 %
-/// of the way.
-const WARMING_MIN: f64 = 6.7;
+use plumbline_effects::robot_model::{WARMING_S, warm_share};
+
 /// A difference of more than this share of the whole way is worth a word: on the lab's twin, whose eyes
 /// turn against each other by 10 mrad on the whole way, this share is 4 mm of depth at 0.45 m.
 const SHARE: f64 = 0.15;
@@ -27,7 +26,7 @@ impl Warmth {
     pub fn of(on_min: f64, calibrated_min: f64) -> Self {
         let off = share(on_min) - share(calibrated_min);
         if off < -SHARE {
-            let enough_min = -WARMING_MIN * (1.0 - (share(calibrated_min) - SHARE)).ln();
+            let enough_min = -WARMING_S / 60.0 * (1.0 - (share(calibrated_min) - SHARE)).ln();
             Self::Colder { wait_min: (enough_min - on_min).ceil().max(1.0) }
         } else if off > SHARE {
             Self::Warmer
@@ -44,7 +43,7 @@ pub fn is_cold(on_min: f64) -> bool {
 
 /// Share of the way from cold to warm.
 fn share(on_min: f64) -> f64 {
-    1.0 - (-on_min / WARMING_MIN).exp()
+    warm_share(60.0 * on_min)
 }
 
 #[cfg(test)]

@@ -38,7 +38,16 @@ pub struct HandEyeView {
 impl HandEyeView {
     /// Why nothing can be looked at now, and what to do: the first gate that is shut.
     pub fn trouble(&self) -> Option<&str> {
-        self.gates.iter().find(|gate| gate.state == GateState::Shut).map(|gate| gate.text.as_str())
+        self.first(GateState::Shut)
+    }
+
+    /// What makes a look doubtful, and what to do: the first such gate.
+    pub fn doubt(&self) -> Option<&str> {
+        self.first(GateState::Doubtful)
+    }
+
+    fn first(&self, state: GateState) -> Option<&str> {
+        self.gates.iter().find(|gate| gate.state == state).map(|gate| gate.text.as_str())
     }
 }
 

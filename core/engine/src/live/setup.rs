@@ -58,9 +58,10 @@ impl LiveSetup {
     }
 
     /// Why the uncertainty of places is wide, or what it leaves out, and what to do; `None`: all that they rest on was
-    /// measured, and says how well it is known.
+    /// measured with eyes about as warm as now, and says how well it is known.
     pub fn wide_because(&self) -> Option<&'static str> {
-        wide_because(self.model.unmeasured(), self.calibration.covariance.is_some())
+        let turned = self.model.turned_since(&self.seen_under());
+        wide_because(self.model.unmeasured(), self.calibration.covariance.is_some(), turned)
     }
 
     /// Where the left eye is.

@@ -1,13 +1,14 @@
 //! Why places in the robot's frame are stated with a wide uncertainty while something was not measured, and that the
 //! uncertainty leaves out what nobody knows.
 
-use plumbline_effects::robot_model::Unmeasured;
+use plumbline_effects::robot_model::{Turned, Unmeasured};
 
 /// Why the uncertainty of places in the robot's frame is wide, or what it leaves out, and what to do: two or three
 /// sentences. `None`: all that they rest on was measured, and is as well known as it says. `is_told`: whether the
-/// calibration of the eyes says how well it is known.
-pub fn wide_because(unmeasured: Unmeasured, is_told: bool) -> Option<&'static str> {
+/// calibration of the eyes says how well it is known. `turned`: how far the eyes usually have turned since.
+pub fn wide_because(unmeasured: Unmeasured, is_told: bool, turned: Turned) -> Option<&'static str> {
     match unmeasured {
+        Unmeasured { mount: false, lenses: false } if turned.counts() => Some(TURNED),
         Unmeasured { mount: false, lenses: false } => (!is_told).then_some(UNTOLD),
         Unmeasured { mount: true, lenses: false } => Some(if is_told { MOUNT } else { MOUNT_UNTOLD }),
         Unmeasured { mount: false, lenses: true } => Some(LENSES),
@@ -15,6 +16,8 @@ pub fn wide_because(unmeasured: Unmeasured, is_told: bool) -> Option<&'static st
     }
 }
 
+const TURNED: &str = "The ± is wide because the eyes are not as warm as when they were calibrated: it holds how far eyes \
+     usually turn meanwhile. The clock in the top line says how long they have been on.";
 const MOUNT: &str = "The ± is wide because nobody measured how the eyes sit in the head: it holds how far that usually \
      is off. Calibrate the mount in step 2, Mount.";
 const LENSES: &str = "The ± is wide because these eyes are not calibrated: it holds how far lenses usually are off. \
@@ -33,7 +36,7 @@ mod tests {
 
     #[test]
     fn what_was_not_measured_is_told_with_the_step_that_measures_it_and_what_was_measured_is_not() {
-        let said = |mount, lenses| wide_because(Unmeasured { mount, lenses }, true);
+        let said = |mount, lenses| wide_because(Unmeasured { mount, lenses }, true, Turned::default());
         assert_eq!(said(false, false), None);
         for (mount, lenses) in [(true, false), (false, true), (true, true)] {
             let said = said(mount, lenses).expect("wide");
@@ -43,15 +46,24 @@ mod tests {
     }
 
     #[test]
+    fn eyes_that_have_turned_by_millimeters_since_they_were_calibrated_are_told_and_less_is_not() {
+        let said = |apart_rad| {
+            wide_because(Unmeasured::default(), true, Turned { apart_rad, together_rad: apart_rad })
+        };
+        assert_eq!(said(0.001), None);
+        assert!(said(0.006).is_some_and(|said| said.contains("not as warm as when they were calibrated")));
+    }
+
+    #[test]
     fn a_calibration_that_does_not_say_how_well_it_is_known_is_not_passed_off_as_exact() {
         for mount in [false, true] {
-            let said =
-                wide_because(Unmeasured { mount, lenses: false }, false).expect("something is left out");
+            let said = wide_because(Unmeasured { mount, lenses: false }, false, Turned::default());
+            let said = said.expect("something is left out");
             assert!(said.contains("leaves out how well the eyes are calibrated"), "{said}");
             assert_eq!(said.contains("step 2, Mount"), mount, "{said}");
         }
         // Of eyes that nobody calibrated it holds how far lenses usually are off.
-        let all = |is_told| wide_because(Unmeasured::ALL, is_told);
+        let all = |is_told| wide_because(Unmeasured::ALL, is_told, Turned::default());
         assert_eq!(all(false), all(true));
     }
 }

@@ -78,6 +78,7 @@ fn it_goes_on_once_all_joints_were_heard_for_a_while_and_says_so() {
     let again = desk.order().expect("it goes on");
     assert_eq!(again.number, order.number);
     assert!(desk.said().contains("goes on by itself"), "{}", desk.said());
+    assert_eq!(desk.view().held, 1, "it stays said");
     desk.touch(&again);
     assert!(desk.order().is_some_and(|next| next.number != order.number));
 }

@@ -108,6 +108,7 @@ impl TouchWorkflow {
             touches,
             counts,
             remaining: self.active_run().and_then(Run::remaining),
+            held: self.run.as_ref().map_or(0, |run| run.held),
             figures,
             figures_described,
             session: self.run.as_ref().map(|run| run.session.clone()),
@@ -116,6 +117,10 @@ impl TouchWorkflow {
             reach: self.reach,
             placement: self.placement.clone(),
             placement_proposal: self.proposal.as_ref().map(|proposal| proposal.placement.clone()),
+            proposal_is_older: self
+                .proposal
+                .as_ref()
+                .is_some_and(|proposal| self.run.as_ref().is_some_and(|run| run.session != proposal.session)),
             correct_with: self.correct_with,
             source: source(&around.robot),
             window: self.window.clone(),

@@ -31,6 +31,8 @@ pub struct TouchView {
     pub counts: TouchCounts,
     /// Time left at the pace so far.
     pub remaining: Option<Duration>,
+    /// How often the run held because joints were not heard in time, and went on by itself or would.
+    pub held: usize,
     /// Figures of what was touched so far; `None` before the second touch.
     pub figures: Option<TouchFigures>,
     /// The same of touches that were sent as the robot is described, beside corrected ones.
@@ -48,6 +50,8 @@ pub struct TouchView {
     pub placement: Option<Arc<ScreenPlacement>>,
     /// A measured place that waits to be accepted.
     pub placement_proposal: Option<Arc<ScreenPlacement>>,
+    /// Whether that place was measured by another run than the one that is shown.
+    pub proposal_is_older: bool,
     /// With what targets are corrected before they are sent.
     pub correct_with: Option<Correction>,
     /// Where contacts come from.

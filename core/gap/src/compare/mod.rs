@@ -210,7 +210,7 @@ fn warn_of_noise(floor: &Floor, warnings: &mut Vec<String>) {
         }
         FloorSource::Neighbors => Some("estimated from near neighbors and is approximate"),
         FloorSource::Fitted => Some(
-            "not known, since no row was measured nearly like another one: it is what the best model leaves",
+            "not known, since too few rows were measured nearly like another one: it is what the best model leaves",
         ),
     };
     if let Some(from) = from {

@@ -233,7 +233,7 @@ pub enum HoldReason {
     #[error("jogging ended")]
     JogEnded,
     /// STOP.
-    #[error("STOP was pressed: release it to move again")]
+    #[error("STOP was pressed")]
     Stop,
     /// No sign of life from the window.
     #[error(

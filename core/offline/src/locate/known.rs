@@ -29,6 +29,9 @@ const NO_MOUNT: &str = "The ± of places in the robot's frame is wide because no
 const MOUNT_OF_FILE: &str = "The ± of places in the robot's frame leaves out how well the mount of the eyes is known: the \
      rig file has a mount of its own and does not say it. Name the file of the calibrated mount with --mount.";
 
+const TURNED: &str = "The ± of places in the robot's frame is wide because the eyes were not as warm as when they were \
+     calibrated: it holds how far eyes usually turn meanwhile.";
+
 /// What the ± leaves out where a calibration of the eyes does not say how well it is known.
 pub(super) const EYES_UNTOLD: &str = "The ± leaves out how well the eyes are calibrated: the calibration file does not say \
      it. A calibration made here does.";
@@ -129,7 +132,8 @@ impl Known {
     pub fn wide_because(&self) -> Option<&'static str> {
         match self.mount_of_file {
             true => Some(MOUNT_OF_FILE),
-            false => self.model.unmeasured().mount.then_some(NO_MOUNT),
+            false if self.model.unmeasured().mount => Some(NO_MOUNT),
+            false => self.model.turned_since(&self.seen).counts().then_some(TURNED),
         }
     }
 

@@ -190,8 +190,12 @@ fn in_short(finding: &Finding, addable: &[usize]) -> String {
         format!(" On touches that were held out it closes {} of the gap.", format::percent(closure))
     });
     // What only closes a part of the gap is no name for it.
-    let found =
-        if finding.verdict == Verdict::NotInLibrary { "Not named, but closed in part by" } else { "Found:" };
+    let found = match finding.verdict {
+        Verdict::NotInLibrary => "Not named, but closed in part by",
+        _ if finding.many.is_some() => "Not sure by name; what corrects it:",
+        Verdict::Class => "Found, though other names fit as well:",
+        Verdict::NoGap | Verdict::Named => "Found:",
+    };
     format!("{found} {}.{closed} Adding puts it into the model in use; nothing moves.", names.join(", "))
 }
 

@@ -38,7 +38,7 @@ fn far(view: &View, step: CommissionStep) -> Option<String> {
         }
         CommissionStep::Mount => {
             let (views, left) = (view.mount.views.len(), view.mount.planned.len());
-            (views > 0).then(|| format!("{views} of {} views", views.max(left)))
+            (views > 0).then(|| format!("{views} of {} views", views + left))
         }
         CommissionStep::Screen | CommissionStep::Touches | CommissionStep::Check => {
             let running = matches!(
@@ -96,6 +96,30 @@ pub fn done_in_words(figure: &CommissionFigure) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn views_are_counted_of_all_that_are_planned_until_the_last() {
+        use std::sync::Arc;
+
+        use plumbline_engine::view::{HeadViewSummary, MountView};
+
+        let far = |taken: usize, left: usize| {
+            let view = |name: usize| HeadViewSummary {
+                name: name.to_string(),
+                pan_rad: 0.0,
+                tilt_rad: 0.0,
+                corners: (54, 54),
+                rms_px: None,
+            };
+            let views: Vec<HeadViewSummary> = (0..taken).map(view).collect();
+            let planned = vec![(0.0, 0.0); left];
+            let mount = MountView { views: views.into(), planned: planned.into(), ..MountView::default() };
+            far(&View { mount: Arc::new(mount), ..View::default() }, CommissionStep::Mount)
+        };
+        assert_eq!(far(0, 8), None);
+        assert_eq!(far(6, 2).as_deref(), Some("6 of 8 views"));
+        assert_eq!(far(8, 0).as_deref(), Some("8 of 8 views"));
+    }
 
     #[test]
     fn hands_that_are_seen_no_nearer_than_before_are_not_told_as_a_gain() {

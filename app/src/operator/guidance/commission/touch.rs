@@ -5,7 +5,7 @@ use plumbline_engine::view::TouchPhase;
 use plumbline_model::touch_plan::Purpose;
 
 use super::super::robot;
-use super::super::touch::{done_of, measured, touch, wanted, what_moves};
+use super::super::touch::{done_of, held, measured, touch, wanted, what_moves};
 use super::Said;
 use crate::operator::{Action, CommissionAction, TouchAction, needs_window};
 
@@ -63,7 +63,8 @@ fn run(view: &View, purpose: Purpose, plan: Said) -> Said {
     match &of_view.phase {
         TouchPhase::Running { doing, .. } => {
             let (done, all) = (done_of(of_view.counts), wanted(of_view.counts));
-            let why = format!("{done} of {all} touches. The arm is {doing}. Esc or space stops.");
+            let held = held(of_view.held);
+            let why = format!("{done} of {all} touches. The arm is {doing}. Esc or space stops.{held}");
             return Said::wait(why, (all > 0).then(|| done as f64 / all as f64));
         }
         TouchPhase::Waiting { .. } | TouchPhase::Paused { .. } => return touch(view).into(),

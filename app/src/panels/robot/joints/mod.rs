@@ -112,7 +112,13 @@ fn problems_line(ui: &mut Ui, robot: &RobotView) {
     let Some((joint, problem)) = with.next() else {
         let all = format::count(robot.joints.len(), "joint");
         let how = if robot.connection.is_connected() { "without a problem" } else { "as last seen" };
-        ui.label(theme::small(ui, format!("{all} {how}")));
+        let Some(missing) = words::silent(robot) else {
+            ui.label(theme::small(ui, format!("{all} {how}")));
+            return;
+        };
+        let text = format!("{missing} Every joint that answers is {how}.");
+        let text = RichText::new(text).small().color(Role::Warning.color(theme::tokens(ui)));
+        ui.add(egui::Label::new(text).truncate());
         return;
     };
     let more = match with.count() {

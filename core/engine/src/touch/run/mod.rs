@@ -117,6 +117,8 @@ pub struct Run {
     misses: usize,
     depth: Depth,
     patience: Patience,
+    /// How often it held because joints were not heard, and would go on by itself.
+    pub held: usize,
     contacts: Vec<Instant>,
     planner: Option<(Touchscreen, Arc<Planner>)>,
     ended: bool,
@@ -151,6 +153,7 @@ impl Run {
             misses: 0,
             depth: Depth::default(),
             patience: Patience::default(),
+            held: 0,
             contacts: vec![],
             planner: None,
             ended: false,

@@ -48,6 +48,7 @@ impl Run {
                     "{why} The run goes on by itself with touch {number} as soon as the joints are heard again."
                 );
                 self.phase = Phase::Paused(Some(text));
+                self.held += 1;
             }
             TouchRun::Interrupted(why) | TouchRun::Unheard(why) => {
                 if at_end == AtEnd::Skip {

@@ -165,3 +165,35 @@ fn a_touch_beside_the_image_does_not_spoil_the_place_of_the_screen() {
     let proposal = desk.view().placement_proposal.expect("from the others");
     assert_eq!(proposal.touches, 7);
 }
+
+#[test]
+fn a_place_that_older_touches_give_is_offered_with_a_warning() {
+    let folder = folder();
+    let mut desk = Desk::new(folder.path());
+    desk.start(grid(2, 2));
+    let first = desk.order().expect("an order");
+    desk.touch(&first);
+    desk.apply(TouchCommand::Pause);
+    let second = desk.order().expect("the next one is under way");
+    desk.touch(&second);
+    let older = only_session(folder.path());
+    desk.apply(TouchCommand::Close);
+    desk.start(PlanOptions { repeats: 1, ..PlanOptions::place_screen(area()) });
+    desk.touch_all();
+    let corners = desk.view();
+    assert!(!corners.proposal_is_older, "of the run that is shown");
+    let warns = |remarks: &[String]| remarks.iter().any(|remark| remark.contains("older than the place"));
+    assert!(!warns(&corners.placement_proposal.expect("corners place it").remarks));
+    desk.apply(TouchCommand::AcceptPlacement);
+    desk.apply(TouchCommand::Close);
+
+    desk.apply(TouchCommand::Open { session: older });
+    desk.apply(TouchCommand::Resume);
+    desk.touch_all();
+    let offered = desk.view().placement_proposal.expect("touches for training place it, too");
+    assert!(warns(&offered.remarks[..1]), "{:?}", offered.remarks);
+    // While another run is shown it is said that it comes of an earlier one.
+    desk.apply(TouchCommand::Close);
+    desk.start(grid(2, 1));
+    assert!(desk.view().proposal_is_older);
+}

@@ -16,6 +16,10 @@ use crate::ground::notice::NoticeLevel;
 use crate::motion::ScreenPlace;
 use crate::rig_models::{screen_in, screens_in};
 
+/// Said of a place that older touches give.
+const OLDER: &str = "These touches are older than the place of the screen in use: if the screen was moved since, keep \
+     the one in use";
+
 impl TouchWorkflow {
     pub(super) fn accept_placement(&mut self, context: &mut Context<'_>) -> Result<(), Refusal> {
         self.no_run_under_way()?;
@@ -59,11 +63,17 @@ impl TouchWorkflow {
     }
 
     pub(super) fn placed(&mut self, placed: Result<Proposal, Arc<Unplaced>>, context: &mut Context<'_>) {
+        let in_use_since = self.placement.as_ref().map(|in_use| in_use.at);
         let run = self.run.as_mut();
         let wanted = run.as_ref().is_some_and(|run| run.plan.options.purpose == Purpose::PlaceScreen);
         match placed {
-            Ok(proposal) => {
+            Ok(mut proposal) => {
                 if let Some(run) = run.filter(|run| run.session == proposal.session) {
+                    let gave = run.progress.gave_placement;
+                    if in_use_since.is_some_and(|since| run.progress.started < since && gave != Some(since)) {
+                        // It goes first: nothing else matters where the screen was moved meanwhile.
+                        Arc::make_mut(&mut proposal.placement).remarks.insert(0, OLDER.to_owned());
+                    }
                     run.progress.gave_placement = Some(proposal.placement.at);
                     run.changed();
                 }
