@@ -69,6 +69,21 @@ pub enum GapError {
         /// The same with the joint changed.
         with_m: f64,
     },
+    /// Places of an external device are the mirror image of what the arm did.
+    #[error(
+        "{session}: the measured places are mirrored: with one axis the other way round, what is left falls from {:.1} to \
+         {:.1} mm. The frame of the device is left-handed: change the sign of one of meas_x_m, meas_y_m, meas_z_m, leave \
+         out orientations (meas_q…) or convert them as well, and look again",
+        .off_m * 1e3, .with_m * 1e3
+    )]
+    Mirrored {
+        /// Which session.
+        session: String,
+        /// Typical distance of rows from the model, m.
+        off_m: f64,
+        /// The same with the places mirrored back.
+        with_m: f64,
+    },
     /// A column that should change has one value.
     #[error(
         "{session}: {column} has the same value in every row although the arm moved: it was not logged. Leave the \

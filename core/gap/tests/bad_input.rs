@@ -290,6 +290,20 @@ fn rows_of_another_robot_are_refused() {
 }
 
 #[test]
+fn places_of_a_left_handed_frame_are_refused_and_right_handed_ones_are_not() {
+    for hidden in [vec![], vec![elbow_zero(0.03)]] {
+        for axis in 0..3 {
+            let mut measurements = poses(&one_by_one(60), &hidden, 6);
+            assert!(looked_at(&measurements).is_ok(), "nothing is wrong with it");
+            measurements.rows.iter_mut().for_each(|row| row.measured[axis] = -row.measured[axis]);
+            let error = looked_at(&measurements).expect_err("mirrored");
+            assert!(matches!(error, GapError::Mirrored { .. }), "{error}");
+            assert!(error.to_string().contains("change the sign of one of meas_x_m"), "{error}");
+        }
+    }
+}
+
+#[test]
 fn a_joint_that_turns_the_other_way_is_refused_by_name() {
     for hidden in [vec![], vec![elbow_zero(0.03)]] {
         for (j, joint) in common::JOINTS.iter().enumerate() {

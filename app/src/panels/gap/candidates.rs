@@ -63,7 +63,7 @@ const CANDIDATE_ROW: f32 = 20.0;
 /// `all` gives names to what a candidate trades against. Where its rows are drawn.
 fn table(ui: &mut Ui, candidates: &[&Candidate], all: &[Candidate]) -> egui::Rect {
     let width = ui.available_width();
-    let columns = [width - 230.0, 70.0, 60.0, 84.0].map(|w: f32| w.max(50.0));
+    let columns = [width - 198.0, 68.0, 54.0, 76.0].map(|w: f32| w.max(50.0));
     let header = ["", "probability", "pull, σ", "the data"];
     candidate_row(ui, columns, header.map(|text| (text.to_owned(), true)), None);
     let area = ScrollArea::vertical().auto_shrink(false);

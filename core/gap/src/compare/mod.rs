@@ -7,6 +7,7 @@ mod frames;
 mod instrument;
 mod lack_of_fit;
 mod levers;
+mod mirror;
 mod neighbors;
 mod noise;
 mod oddities;

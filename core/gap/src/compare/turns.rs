@@ -13,7 +13,7 @@ use plumbline_effects::measurements::{Measurements, What};
 use plumbline_effects::{Assumed, Effect, Kind, Present};
 use plumbline_model::JobContext;
 
-use super::frames;
+use super::{frames, mirror};
 use crate::error::{GapError, Turns};
 
 /// At most so many rows of a session take part: a joint that turns the other way shows everywhere.
@@ -79,6 +79,7 @@ pub fn check(measurements: &Measurements, session: usize, context: &dyn JobConte
             }
         }
     }
+    mirror::check(&only, session, best.map(|(with_m, ..)| with_m), context)?;
     let Some((with_m, j, turns)) = best else { return Ok(()) };
     let kinds: Vec<Kind> = [Kind::JointZero].into_iter().chain(USUAL).collect();
     let enough = if turns == Turns::TheOtherWay { CLEARLY_BETTER } else { AS_WELL };
@@ -95,7 +96,11 @@ pub fn check(measurements: &Measurements, session: usize, context: &dyn JobConte
 }
 
 /// Mean length of what is left with frames and zeros fitted, m.
-fn left_m(measurements: &Measurements, session: usize, context: &dyn JobContext) -> Result<f64, GapError> {
+pub(super) fn left_m(
+    measurements: &Measurements,
+    session: usize,
+    context: &dyn JobContext,
+) -> Result<f64, GapError> {
     left_with_m(measurements, session, &[Kind::JointZero], context)
 }
 
