@@ -9,7 +9,7 @@ use plumbline::{PlumblineWindow, Screen, WindowSettings};
 use plumbline_engine::view::{
     AcceptedCalibration, CommissionDone, CommissionFigure, CommissionSpent, CommissionState, CommissionStep,
     CommissionStepView, CommissionView, EyesView, Gate, GateState, MountView, SourceStatus, SourceView,
-    StepState, TouchPhase,
+    StepState, TouchPhase, WARMTH,
 };
 use plumbline_engine::{
     Command, CommissionCommand, EyesCommand, GraspCommand, HandEyeCommand, MountCommand, SourceSpec,
@@ -309,7 +309,7 @@ fn the_hands_are_looked_at_then_what_was_learned_is_accepted() {
 fn hands_are_not_looked_at_with_cold_eyes_unwarned() {
     let mut view = at(CommissionStep::Hands);
     let text = "The eyes have been on for 2 min and were calibrated after 25 min: places are off.".to_owned();
-    let gate = Gate { name: "Warmth", state: GateState::Doubtful, text };
+    let gate = Gate { name: WARMTH, state: GateState::Doubtful, text };
     Arc::make_mut(&mut view.handeye).gates = Arc::from([gate]);
     let real = Fake::over(view.clone()).window(on(Screen::HandEye));
     assert!(says(&real, "calibrated after 25 min: places are off. The head turns"), "before anything moves");

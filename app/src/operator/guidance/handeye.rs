@@ -1,7 +1,7 @@
 //! What to do next so that the arms are tied to the eyes.
 
 use plumbline_engine::View;
-use plumbline_engine::view::HandEyeSummary;
+use plumbline_engine::view::{Gate, HandEyeSummary, WARMTH};
 use plumbline_widgets::format;
 
 use super::sentence::{Guidance, say};
@@ -36,8 +36,8 @@ pub(super) fn handeye(view: &View) -> Guidance {
     }
     let look = Action::HandEye(HandEyeAction::Look);
     let moves = if view.twin.running { MOVES_OF_THE_TWIN } else { MOVES };
-    if let Some(why) = handeye.doubt() {
-        return doubtful(view, why, moves);
+    if let Some(doubt) = handeye.doubt() {
+        return doubtful(view, doubt, moves);
     }
     match (&handeye.stale, &handeye.in_use) {
         (Some(why), _) => say(format!("{why} {moves}")).warn().then("Look again", look),
@@ -50,8 +50,9 @@ pub(super) fn handeye(view: &View) -> Guidance {
 }
 
 /// What speaks against looking now goes first. Eyes of a twin get warm at a press.
-fn doubtful(view: &View, why: &str, moves: &str) -> Guidance {
-    if view.twin.running && view.eyes.health.colder_wait_min.is_some() {
+fn doubtful(view: &View, doubt: &Gate, moves: &str) -> Guidance {
+    let why = &doubt.text;
+    if doubt.name == WARMTH && view.twin.running && view.eyes.health.colder_wait_min.is_some() {
         let warm = RobotAction::WarmUp;
         return say(format!("{why} Warming moves nothing.")).warn().then(warm.label(), Action::Robot(warm));
     }

@@ -6,6 +6,8 @@
 
 mod arm;
 #[cfg(test)]
+mod drawn;
+#[cfg(test)]
 mod laws;
 mod left;
 mod mounted;

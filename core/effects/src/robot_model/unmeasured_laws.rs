@@ -3,38 +3,20 @@
 
 use nalgebra::{Matrix3, Matrix6, Vector3};
 use plumbline_model::robot::{Posture, Rig, default_rig};
-use plumbline_model::{LeftCamera, Point, Robot};
+use plumbline_model::{LeftCamera, Point};
 
+use super::drawn::{model, share_inside};
 use super::laws::Noise;
 use super::*;
 use crate::library::Kind;
 use crate::rig_model::ModelEffect;
 
 const MOUNT: Unmeasured = Unmeasured { mount: true, lenses: false };
-/// 95 % of chi-square with three degrees of freedom.
-const INSIDE: f64 = 7.815;
 /// Mean error over the table with a mount that nobody measured, as published, m.
 const PUBLISHED_M: f64 = 0.0368;
 
 fn effect(kind: Kind, site: &str, shape: Option<f64>, values: Vec<f64>) -> ModelEffect {
-    ModelEffect {
-        id: kind.id().to_owned(),
-        site: site.to_owned(),
-        title: String::new(),
-        tip: None,
-        shape,
-        reference_s: 0.0,
-        values,
-        covariance: vec![],
-        probability: None,
-        parameters: vec![],
-    }
-}
-
-fn model(rig: &Arc<Rig>, effects: Vec<ModelEffect>) -> RobotModel {
-    let mut added = RigModel::nominal(rig);
-    added.contents.effects = effects;
-    RobotModel::new(rig.clone(), Arc::new(added)).expect("they fit")
+    super::drawn::effect(kind.id(), site, shape, values)
 }
 
 fn neck(rig: &Rig) -> [String; 2] {
@@ -61,10 +43,6 @@ fn drawn(rig: &Arc<Rig>, of: Unmeasured, noise: &mut Noise) -> RobotModel {
     model(rig, effects.collect())
 }
 
-fn places() -> [Point<Robot>; 3] {
-    [[0.35, -0.1, 0.08], [0.3, 0.12, 0.06], [0.4, 0.0, 0.1]].map(|[x, y, z]| Point::new(x, y, z))
-}
-
 fn place(by: &RobotModel, in_left: &Point<LeftCamera>, posture: &Posture) -> PlaceInRobot {
     by.place(in_left, &Matrix3::zeros(), posture, &SeenUnder::default()).expect("a place")
 }
@@ -72,27 +50,11 @@ fn place(by: &RobotModel, in_left: &Point<LeftCamera>, posture: &Posture) -> Pla
 #[test]
 fn the_true_place_lies_inside_the_stated_95_percent_whatever_is_drawn() {
     let rig = default_rig();
-    let posture = rig.home();
     for of in [MOUNT, Unmeasured::ALL] {
         let here = RobotModel::nominal(rig.clone()).with_not_calibrated(of);
-        let (mut noise, mut inside, mut judged) = (Noise(3), 0, 0);
-        for _ in 0..250 {
-            let truly = drawn(&rig, of, &mut noise);
-            for point in places() {
-                let Some((left, right)) = truly.project(&point, &posture, &SeenUnder::default()) else {
-                    continue;
-                };
-                let in_left = rig.eyes.cameras.triangulate(left, right).expect("rays meet");
-                let found = place(&here, &in_left, &posture);
-                let error_m = found.point.coords.coords - point.coords.coords;
-                let information = found.covariance_m2.try_inverse().expect("nothing is known exactly");
-                inside += usize::from((error_m.transpose() * information * error_m).x < INSIDE);
-                judged += 1;
-            }
-        }
-        assert!(judged > 740, "{judged} of 750 are in view");
-        let share = inside as f64 / judged as f64;
-        assert!((0.90..=0.99).contains(&share), "{of:?}: {share} of {judged}");
+        let mut noise = Noise(3);
+        let share = share_inside(&here, &SeenUnder::default(), || drawn(&rig, of, &mut noise));
+        assert!((0.90..=0.99).contains(&share), "{of:?}: {share}");
     }
 }
 

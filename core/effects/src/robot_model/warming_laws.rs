@@ -5,40 +5,18 @@ use nalgebra::Matrix3;
 use plumbline_model::Point;
 use plumbline_model::robot::{CalibratedAt, Rig, default_rig};
 
+use super::drawn::{effect, model, share_inside};
 use super::laws::Noise;
 use super::*;
 use crate::rig_model::ModelEffect;
 
 /// Twenty-five minutes: warm.
 const CALIBRATED_S: f64 = 1500.0;
-/// 95 % of chi-square with three degrees of freedom.
-const INSIDE: f64 = 7.815;
 
 fn calibrated(cameras_s: Option<f64>, mount_s: Option<f64>) -> Arc<Rig> {
     let mut rig = Rig::clone(&default_rig());
     rig.eyes.calibrated_at = CalibratedAt { cameras_s, mount_s };
     Arc::new(rig)
-}
-
-fn with(rig: &Arc<Rig>, effects: Vec<ModelEffect>) -> RobotModel {
-    let mut added = RigModel::nominal(rig);
-    added.contents.effects = effects;
-    RobotModel::new(rig.clone(), Arc::new(added)).expect("they fit")
-}
-
-fn effect(id: &str, site: &str, shape: Option<f64>, values: Vec<f64>) -> ModelEffect {
-    ModelEffect {
-        id: id.to_owned(),
-        site: site.to_owned(),
-        title: String::new(),
-        tip: None,
-        shape,
-        reference_s: 0.0,
-        values,
-        covariance: vec![],
-        probability: None,
-        parameters: vec![],
-    }
 }
 
 fn under(t_secs: Option<f64>) -> SeenUnder {
@@ -56,33 +34,16 @@ fn sigma_m(model: &RobotModel, t_secs: Option<f64>) -> f64 {
 fn the_true_place_lies_inside_the_stated_95_percent_however_warm_the_eyes_are() {
     let rig = calibrated(Some(CALIBRATED_S), Some(CALIBRATED_S));
     let here = RobotModel::nominal(rig.clone());
-    let posture = rig.home();
     for t_secs in [0.0, 240.0, 600.0] {
         let since = warm_share(t_secs) - warm_share(CALIBRATED_S);
-        let (mut noise, mut inside, mut judged) = (Noise(11), 0_usize, 0_usize);
-        for _ in 0..250 {
+        let mut noise = Noise(11);
+        let share = share_inside(&here, &under(Some(t_secs)), || {
             let mut turned = || 0.01 * since * noise.normal();
             let yaw = effect("eye-yaw", "right", None, vec![turned()]);
-            let both =
-                effect("camera-mount", "eyes", None, vec![0.0, 0.0, 0.0, turned(), turned(), turned()]);
-            let truly = with(&rig, vec![yaw, both]);
-            for [x, y, z] in [[0.35, -0.1, 0.08], [0.3, 0.12, 0.06], [0.4, 0.0, 0.1]] {
-                let point = Point::new(x, y, z);
-                let Some((left, right)) = truly.project(&point, &posture, &SeenUnder::default()) else {
-                    continue;
-                };
-                let in_left = rig.eyes.cameras.triangulate(left, right).expect("rays meet");
-                let place = here.place(&in_left, &Matrix3::zeros(), &posture, &under(Some(t_secs)));
-                let place = place.expect("a place");
-                let error_m = place.point.coords.coords - point.coords.coords;
-                let information = place.covariance_m2.try_inverse().expect("nothing is known exactly");
-                inside += usize::from((error_m.transpose() * information * error_m).x < INSIDE);
-                judged += 1;
-            }
-        }
-        assert!(judged > 700, "{judged} of 750 are in view");
-        let share = inside as f64 / judged as f64;
-        assert!((0.90..=0.99).contains(&share), "{t_secs} s: {share} of {judged}");
+            let both = vec![0.0, 0.0, 0.0, turned(), turned(), turned()];
+            model(&rig, vec![yaw, effect("camera-mount", "eyes", None, both)])
+        });
+        assert!((0.90..=0.99).contains(&share), "{t_secs} s: {share}");
     }
 }
 
@@ -107,7 +68,7 @@ fn what_is_not_known_is_not_guessed_and_what_was_watched_is_not_added_again() {
     assert!((0.003..0.006).contains(&mount_only), "{mount_only}");
     let watched =
         ModelEffect { reference_s: CALIBRATED_S, ..effect("eye-yaw", "right", Some(300.0), vec![0.006]) };
-    let watched = with(&calibrated(Some(CALIBRATED_S), Some(CALIBRATED_S)), vec![watched]);
+    let watched = model(&calibrated(Some(CALIBRATED_S), Some(CALIBRATED_S)), vec![watched]);
     assert_eq!(watched.turned_since(&under(Some(0.0))), Turned::default());
     assert!(sigma_m(&watched, Some(0.0)) < 1e-6);
 }

@@ -101,6 +101,8 @@ pub struct Gate {
 
 /// Name of the gate that is shut while a hand holds something.
 pub const FULL_HAND: &str = "Hand";
+/// Name of the gate of how warm the eyes are.
+pub const WARMTH: &str = "Warmth";
 
 /// Whether a gate lets pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

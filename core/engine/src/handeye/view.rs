@@ -38,16 +38,16 @@ pub struct HandEyeView {
 impl HandEyeView {
     /// Why nothing can be looked at now, and what to do: the first gate that is shut.
     pub fn trouble(&self) -> Option<&str> {
-        self.first(GateState::Shut)
+        self.first(GateState::Shut).map(|gate| gate.text.as_str())
     }
 
     /// What makes a look doubtful, and what to do: the first such gate.
-    pub fn doubt(&self) -> Option<&str> {
+    pub fn doubt(&self) -> Option<&Gate> {
         self.first(GateState::Doubtful)
     }
 
-    fn first(&self, state: GateState) -> Option<&str> {
-        self.gates.iter().find(|gate| gate.state == state).map(|gate| gate.text.as_str())
+    fn first(&self, state: GateState) -> Option<&Gate> {
+        self.gates.iter().find(|gate| gate.state == state)
     }
 }
 

@@ -26,6 +26,8 @@ use crate::robot::view::RobotView;
 pub const MISSES: usize = 5;
 /// The pace is that of so many touches.
 const PACE_OF: usize = 15;
+/// A touch that took so many times as long as the median was one with a pause before it.
+const PAUSE: f64 = 4.0;
 
 /// What a run does.
 #[derive(Clone, Debug, PartialEq)]
@@ -231,8 +233,12 @@ impl Run {
             newest.windows(2).map(|pair| pair[1].saturating_duration_since(pair[0])).collect();
         gaps.sort();
         let planned = self.plan.duration_s / self.plan.reachable().max(1) as f64;
-        // The median: a pause in between says nothing about the pace.
-        let each_s = gaps.get(gaps.len() / 2).map_or(planned, Duration::as_secs_f64);
+        let median_s = gaps.get(gaps.len() / 2).map_or(planned, Duration::as_secs_f64);
+        // Short holds belong to the pace, or the time left would grow with each; a pause says nothing about it.
+        let of_pace: Vec<f64> =
+            gaps.iter().map(Duration::as_secs_f64).filter(|gap_s| *gap_s < PAUSE * median_s).collect();
+        let each_s = of_pace.iter().sum::<f64>() / of_pace.len().max(1) as f64;
+        let each_s = if of_pace.is_empty() { median_s } else { each_s };
         Duration::try_from_secs_f64(each_s * self.left() as f64).ok()
     }
 

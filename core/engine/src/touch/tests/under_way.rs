@@ -1,5 +1,7 @@
 //! What happens while a run is under way: what the operator asks for, what is missed, and what the glass tells.
 
+use std::time::Duration;
+
 use plumbline_model::session::{TouchTable, names};
 use plumbline_model::touch_plan::{Pattern, PlanOptions};
 use plumbline_model::{Pixel, Session};
@@ -234,4 +236,13 @@ fn the_time_left_follows_the_pace() {
     }
     // The made-up robot takes nine seconds for each.
     assert_eq!(desk.view().remaining.map(|left| left.as_secs()), Some(5 * 9));
+    let next = |desk: &mut Desk, holds_s: u64| {
+        desk.wait(Duration::from_secs(holds_s));
+        let order = desk.order().expect("an order");
+        desk.touch(&order);
+        desk.view().remaining.map(|left| left.as_secs())
+    };
+    // A short hold belongs to the pace: 9, 9 and 18 s. An hour's pause does not.
+    assert_eq!(next(&mut desk, 9), Some(4 * 12));
+    assert_eq!(next(&mut desk, 3600), Some(3 * 12));
 }
