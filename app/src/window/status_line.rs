@@ -56,7 +56,7 @@ fn line_of(view: &View, screen: Screen) -> Line<'_> {
 
 fn contents(view: &View, line: Line<'_>, resting: bool, ui: &mut Ui, outbox: &mut Outbox) {
     let (guidance, led) = match line {
-        Line::Running(job) => return running(job, ui, outbox),
+        Line::Running(job) => return running(view, job, ui, outbox),
         Line::Guided { guidance, led } => (guidance, led),
     };
     let accepts = guidance.next.as_ref().is_some_and(|next| next.action.puts_in_use());
@@ -85,9 +85,10 @@ fn contents(view: &View, line: Line<'_>, resting: bool, ui: &mut Ui, outbox: &mu
     });
 }
 
-fn running(job: &JobView, ui: &mut Ui, outbox: &mut Outbox) {
+fn running(view: &View, job: &JobView, ui: &mut Ui, outbox: &mut Outbox) {
     let JobState::Running { fraction, doing, remaining, cancelling } = &job.state else { return };
-    let sentence = format!("{}: {doing}", job.title);
+    let stops = if moves(view) { ". The robot moves; Esc or space stops." } else { "" };
+    let sentence = format!("{}: {doing}{stops}", job.title);
     let progress = ProgressLine::job(&sentence, *fraction).time_left(*remaining).cancelling(*cancelling);
     let asked = ui.with_layout(Layout::left_to_right(Align::Center), |ui| progress.show(ui)).inner;
     if asked == Some(ProgressAction::Cancel) {
@@ -111,7 +112,8 @@ fn of_course(view: &View, screen: Screen, course: Course) -> Guidance {
     // What would only lead on gives way to what leads.
     let leads_on = matches!(own.next.as_ref().map(|next| next.action), Some(Action::Go(_))) && !own.warning;
     if is_elsewhere && !leads_on {
-        return own;
+        // Two things do not come next at once.
+        return Guidance { sentence: own.sentence.replace("Next: ", "Possible here: "), ..own };
     }
     let holds = |action: Action| {
         matches!(action, Action::Touch(TouchAction::Pause) | Action::Grasp(GraspAction::Pause))

@@ -3,6 +3,7 @@
 use egui::Ui;
 use plumbline_engine::View;
 use plumbline_model::listed;
+use plumbline_model::touch_plan::Purpose;
 
 use super::sheet::{Asked, buttons, title};
 
@@ -12,11 +13,19 @@ pub(super) fn unaccepted(view: &View) -> Vec<&'static str> {
     let of = [
         (eyes, "the calibration of the eyes"),
         (view.mount.proposal.is_some(), "the mount of the eyes"),
-        (view.touch.placement_proposal.is_some(), "the place of the screen"),
+        (is_place_open(view), "the place of the screen"),
         (are_models_open(view), "the correction models"),
         (view.handeye.proposal.is_some(), "what hand and eyes agree on"),
     ];
     of.into_iter().filter_map(|(is_open, what)| is_open.then_some(what)).collect()
+}
+
+/// Touches to learn from measure the place of a screen that was placed, too: nobody waits for that.
+fn is_place_open(view: &View) -> bool {
+    let touch = &view.touch;
+    let purpose = touch.plan.as_ref().map(|plan| plan.options.purpose);
+    let is_asked_for = !touch.proposal_is_older && purpose != Some(Purpose::Train);
+    touch.placement_proposal.is_some() && (touch.placement.is_none() || is_asked_for)
 }
 
 /// Of models that were trained on the same touches one is enough.

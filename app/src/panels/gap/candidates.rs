@@ -59,11 +59,17 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
 }
 
 const CANDIDATE_ROW: f32 = 20.0;
+/// Narrower than this there is room for names and probabilities only.
+const NARROW: f32 = 400.0;
 
 /// `all` gives names to what a candidate trades against. Where its rows are drawn.
 fn table(ui: &mut Ui, candidates: &[&Candidate], all: &[Candidate]) -> egui::Rect {
     let width = ui.available_width();
-    let columns = [width - 198.0, 68.0, 54.0, 76.0].map(|w: f32| w.max(50.0));
+    // Where there is no room for all, the name counts for more; what is left out stands where a row is pointed at.
+    let columns = match width < NARROW {
+        true => [width - 68.0, 68.0, 0.0, 0.0],
+        false => [width - 198.0, 68.0, 54.0, 76.0],
+    };
     let header = ["", "probability", "pull, σ", "the data"];
     candidate_row(ui, columns, header.map(|text| (text.to_owned(), true)), None);
     let area = ScrollArea::vertical().auto_shrink(false);
@@ -78,7 +84,8 @@ fn table(ui: &mut Ui, candidates: &[&Candidate], all: &[Candidate]) -> egui::Rec
                 (word.to_owned(), word != "known"),
             ];
             let name = capitalized(&effect::named(&candidate.id, &candidate.site, &candidate.title));
-            candidate_row(ui, columns, cells, Some(format!("{name}. {meaning}")));
+            let pull = format::fixed(candidate.score_sigmas, 1);
+            candidate_row(ui, columns, cells, Some(format!("{name}. Pull {pull} σ. {meaning}")));
         }
     });
     shown.inner_rect
@@ -96,7 +103,8 @@ fn candidate_row(ui: &mut Ui, columns: [f32; 4], cells: [(String, bool); 4], hel
     }
     let font = egui::TextStyle::Small.resolve(ui.style());
     let mut x = rect.left();
-    for (i, ((text, weak), width)) in cells.into_iter().zip(columns).enumerate() {
+    let shown = cells.into_iter().zip(columns).filter(|(_, width)| *width > 0.0);
+    for (i, ((text, weak), width)) in shown.enumerate() {
         let color = if weak { tokens.text_weak } else { tokens.text };
         let mut job = egui::text::LayoutJob::simple_singleline(text, font.clone(), color);
         job.wrap = egui::text::TextWrapping::truncate_at_width(width - 6.0);

@@ -110,7 +110,13 @@ fn gates(ui: &mut Ui, grasp: &GraspView) {
     }
     let tokens = theme::tokens(ui);
     if grasp.trouble().is_none() && grasp.run.is_none() {
-        ui.label(RichText::new("Ready.").color(Role::Accepted.color(tokens)));
+        match grasp.gates.iter().find(|gate| gate.state == GateState::Doubtful) {
+            None => ui.label(RichText::new("Ready.").color(Role::Accepted.color(tokens))),
+            Some(doubt) => {
+                let text = format!("Ready, in doubt: {}", doubt.text);
+                ui.label(RichText::new(text).color(Role::Warning.color(tokens)))
+            }
+        };
     }
     for gate in grasp.gates.iter().filter(|gate| gate.state == GateState::Shut && gate.name != FULL_HAND) {
         let text = format!("{}, not ready: {}", gate.name, gate.text);

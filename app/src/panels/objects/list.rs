@@ -17,6 +17,10 @@ const SWATCH: f32 = 10.0;
 
 /// Draws the list; pointing at a line highlights its boxes, a click chooses.
 pub fn show(ui: &mut Ui, view: &View, panels: &mut ObjectsPanels) {
+    let places = objects(view).iter().filter_map(|object| object.place.as_ref().ok());
+    if let Some(why) = places.filter_map(|place| place.wide_because).next() {
+        ui.label(theme::small(ui, why));
+    }
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
         for object in in_order(&panels.listed, objects(view)) {

@@ -106,8 +106,10 @@ impl RobotModel {
 
     /// What nobody measured of the eyes: neither a calibration nor an effect in force says it.
     pub fn unmeasured(&self) -> Unmeasured {
-        let Prior { mounted, lenses, .. } = &self.prior;
-        Unmeasured { mount: self.mounted.is_none() && mounted.is_some(), lenses: lenses.is_some() }
+        let Prior { mounted, lenses, neck, .. } = &self.prior;
+        let mount = self.mounted.is_none() && mounted.is_some();
+        let neck = neck.is_some_and(|neck| neck.rest_sigma_rad[0] > 0.0);
+        Unmeasured { mount, lenses: lenses.is_some(), neck }
     }
 
     /// The same effects on a rig whose calibrations are others.

@@ -101,12 +101,19 @@ impl RobotModel {
         let seen_at = in_left.coords.coords;
         let (mounted, lenses) = (self.mounted.or(self.prior.mounted), self.prior.lenses);
         let by_mount_m2 = mounted.map(|mounted| mounted.covariance_m2(&self.rig, posture, &seen_at));
+        // A mount as it usually is holds the zeros of the neck.
+        let is_usual = self.mounted.is_none() && self.prior.mounted.is_some();
+        let by_neck_m2 = self
+            .prior
+            .neck
+            .filter(|_| !is_usual)
+            .map(|neck| neck.covariance_m2(&self.rig, posture, &seen_at));
         let by_lenses_m2 = lenses.map(|lenses| lenses.covariance_m2(&self.rig.eyes.cameras, &seen_at));
         let [by_mount_m2, by_lenses_m2] = [by_mount_m2, by_lenses_m2].map(Option::unwrap_or_default);
         let turned = self.turned_since(seen).covariances_m2(&self.rig.eyes.cameras, &seen_at);
         let turn = robot_from_left.rotation();
         let by_lenses_m2 = by_lenses_m2 + turned[0];
-        let by_mount_m2 = by_mount_m2 + turn * turned[1] * turn.transpose();
+        let by_mount_m2 = by_mount_m2 + by_neck_m2.unwrap_or_default() + turn * turned[1] * turn.transpose();
         if self.of_eyes.present.is_empty() {
             let covariance_m2 = turn * (covariance_m2 + by_lenses_m2) * turn.transpose() + by_mount_m2;
             return Some(PlaceInRobot { point: robot_from_left * *in_left, covariance_m2, by_mount_m2 });

@@ -24,11 +24,14 @@ pub struct Unmeasured {
     pub mount: bool,
     /// Their lenses, and how they sit to each other.
     pub lenses: bool,
+    /// Where the head looks straight ahead: no board tells the zero of the neck's turn, for all that is seen turns with
+    /// it. The robot's own body does, and its hands.
+    pub neck: bool,
 }
 
 impl Unmeasured {
     /// Eyes of which nothing was measured.
-    pub const ALL: Self = Self { mount: true, lenses: true };
+    pub const ALL: Self = Self { mount: true, lenses: true, neck: true };
 }
 
 /// How far off that is, one standard deviation of each.
@@ -40,16 +43,23 @@ pub(super) struct Prior {
     pub mounted: Option<Mounted>,
     /// Of the lenses; `None`: they count as known.
     pub lenses: Option<Lenses>,
+    /// Of the zero of the neck's turn, which counts beside a mount that was measured; `None`: it counts as known.
+    pub neck: Option<Mounted>,
 }
 
 impl Prior {
     /// Of what nobody calibrated. What an effect in force says of the eyes was measured by it.
     pub fn new(not_calibrated: Unmeasured, rig: &Rig, of_eyes: &Measured) -> Self {
-        let Unmeasured { mount, lenses } = not_calibrated;
+        let Unmeasured { mount, lenses, neck } = not_calibrated;
+        let usual = usual_mount(rig, &of_eyes.present);
         Self {
             not_calibrated,
-            mounted: if mount { usual_mount(rig, &of_eyes.present) } else { None },
+            mounted: usual.filter(|_| mount),
             lenses: lenses.then(|| Lenses::usual(&of_eyes.present)),
+            neck: usual.filter(|_| neck).map(|Mounted { rest_sigma_rad: [pan_rad, _], .. }| Mounted {
+                covariance: Matrix6::zeros(),
+                rest_sigma_rad: [pan_rad, 0.0],
+            }),
         }
     }
 }

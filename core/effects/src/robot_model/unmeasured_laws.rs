@@ -11,7 +11,7 @@ use super::*;
 use crate::library::Kind;
 use crate::rig_model::ModelEffect;
 
-const MOUNT: Unmeasured = Unmeasured { mount: true, lenses: false };
+const MOUNT: Unmeasured = Unmeasured { mount: true, lenses: false, neck: false };
 /// Mean error over the table with a mount that nobody measured, as published, m.
 const PUBLISHED_M: f64 = 0.0368;
 
@@ -75,6 +75,31 @@ fn a_mount_that_nobody_measured_is_off_by_about_what_was_published() {
     let mean_m = errors_m.iter().sum::<f64>() / errors_m.len() as f64;
     // Published is with the errors of its stereo.
     assert!((0.7 * PUBLISHED_M..PUBLISHED_M).contains(&mean_m), "{mean_m}");
+}
+
+#[test]
+fn the_zero_of_the_necks_turn_stays_unknown_beside_a_mount_until_something_says_it() {
+    let rig = default_rig();
+    let posture = rig.home();
+    let in_left = Point::new(0.05, 0.02, 0.5);
+    let mounted = Mounted { covariance: Matrix6::identity() * 1e-6, rest_sigma_rad: [0.001; 2] };
+    let of_neck = Unmeasured { neck: true, ..Unmeasured::default() };
+    let with = |effects, of| {
+        place(&model(&rig, effects).with_mounted(Some(mounted)).with_not_calibrated(of), &in_left, &posture)
+    };
+    let (known, unknown) = (with(vec![], Unmeasured::default()), with(vec![], of_neck));
+    // 1.5° at the half meter and more that it is from the axis: to the side, and nothing upward.
+    let more_m2 = unknown.covariance_m2 - known.covariance_m2;
+    assert!((0.008..0.016).contains(&more_m2.trace().sqrt()), "{}", more_m2.trace().sqrt());
+    assert!(more_m2[(2, 2)] < 1e-9 && unknown.point == known.point);
+    assert_eq!(unknown.by_mount_m2 - known.by_mount_m2, more_m2, "it moves all alike");
+    let [pan, _] = neck(&rig);
+    let told = || vec![effect(Kind::HeadJoint, &pan, None, vec![0.02])];
+    assert_eq!(with(told(), of_neck), with(told(), Unmeasured::default()));
+    // All of a mount that nobody measured holds it once.
+    let all = RobotModel::nominal(rig.clone()).with_not_calibrated(Unmeasured { neck: true, ..MOUNT });
+    let mount = RobotModel::nominal(rig.clone()).with_not_calibrated(MOUNT);
+    assert_eq!(place(&all, &in_left, &posture), place(&mount, &in_left, &posture));
 }
 
 #[test]

@@ -8,11 +8,14 @@ use plumbline_effects::robot_model::{Turned, Unmeasured};
 /// calibration of the eyes says how well it is known. `turned`: how far the eyes usually have turned since.
 pub fn wide_because(unmeasured: Unmeasured, is_told: bool, turned: Turned) -> Option<&'static str> {
     match unmeasured {
-        Unmeasured { mount: false, lenses: false } if turned.counts() => Some(TURNED),
-        Unmeasured { mount: false, lenses: false } => (!is_told).then_some(UNTOLD),
-        Unmeasured { mount: true, lenses: false } => Some(if is_told { MOUNT } else { MOUNT_UNTOLD }),
-        Unmeasured { mount: false, lenses: true } => Some(LENSES),
-        Unmeasured { mount: true, lenses: true } => Some(BOTH),
+        Unmeasured { mount: false, lenses: false, .. } if turned.counts() => Some(TURNED),
+        Unmeasured { mount: false, lenses: false, neck: true } => {
+            Some(if is_told { NECK } else { NECK_UNTOLD })
+        }
+        Unmeasured { mount: false, lenses: false, neck: false } => (!is_told).then_some(UNTOLD),
+        Unmeasured { mount: true, lenses: false, .. } => Some(if is_told { MOUNT } else { MOUNT_UNTOLD }),
+        Unmeasured { mount: false, lenses: true, .. } => Some(LENSES),
+        Unmeasured { mount: true, lenses: true, .. } => Some(BOTH),
     }
 }
 
@@ -20,6 +23,11 @@ const TURNED: &str = "The ± is wide because the eyes are not as warm as when th
      usually turn meanwhile. The clock in the top line says how long they have been on.";
 const MOUNT: &str = "The ± is wide because nobody measured how the eyes sit in the head: it holds how far that usually \
      is off. Calibrate the mount in step 2, Mount.";
+const NECK: &str = "The ± is wide because nobody measured where the head looks straight ahead, which no board tells: it \
+     holds how far zeros of necks usually are off. Look at the hands, in step 6, Hand-eye.";
+const NECK_UNTOLD: &str = "The ± is wide because nobody measured where the head looks straight ahead: it holds how far zeros \
+     of necks usually are off. Look at the hands, in step 6, Hand-eye. It leaves out how well the eyes are calibrated, \
+     which the file of the calibration does not say.";
 const LENSES: &str = "The ± is wide because these eyes are not calibrated: it holds how far lenses usually are off. \
      Calibrate them in step 1, Eyes.";
 const BOTH: &str = "The ± is wide because neither the eyes are calibrated nor their mount: it holds how far both \
@@ -36,8 +44,11 @@ mod tests {
 
     #[test]
     fn what_was_not_measured_is_told_with_the_step_that_measures_it_and_what_was_measured_is_not() {
-        let said = |mount, lenses| wide_because(Unmeasured { mount, lenses }, true, Turned::default());
+        let said =
+            |mount, lenses| wide_because(Unmeasured { mount, lenses, neck: mount }, true, Turned::default());
         assert_eq!(said(false, false), None);
+        let neck = wide_because(Unmeasured { neck: true, ..Unmeasured::default() }, true, Turned::default());
+        assert!(neck.is_some_and(|said| said.contains("step 6, Hand-eye")), "{neck:?}");
         for (mount, lenses) in [(true, false), (false, true), (true, true)] {
             let said = said(mount, lenses).expect("wide");
             assert_eq!(said.contains("step 1, Eyes"), lenses, "{said}");
@@ -57,7 +68,8 @@ mod tests {
     #[test]
     fn a_calibration_that_does_not_say_how_well_it_is_known_is_not_passed_off_as_exact() {
         for mount in [false, true] {
-            let said = wide_because(Unmeasured { mount, lenses: false }, false, Turned::default());
+            let said =
+                wide_because(Unmeasured { mount, lenses: false, neck: mount }, false, Turned::default());
             let said = said.expect("something is left out");
             assert!(said.contains("leaves out how well the eyes are calibrated"), "{said}");
             assert_eq!(said.contains("step 2, Mount"), mount, "{said}");

@@ -57,9 +57,9 @@ impl Accepted<'_> {
             && rig.touchscreen == *self.screen.unwrap_or(&described.touchscreen)
     }
 
-    /// What of the eyes nobody calibrated: it is taken as described.
+    /// What of the eyes nobody calibrated: it is taken as described. The neck's zero is told by effects alone.
     fn not_calibrated(&self) -> Unmeasured {
-        Unmeasured { mount: self.mounted.is_none(), lenses: self.cameras.is_none() }
+        Unmeasured { mount: self.mounted.is_none(), lenses: self.cameras.is_none(), neck: true }
     }
 
     /// The description with it. Effects on the eyes that were found with other eyes are not in force, but for what

@@ -218,8 +218,11 @@ fn what_was_not_accepted_of_the_eyes_is_unmeasured_and_whatever_is_accepted_make
     // A calibration that came out as described, and a mount, are measured all the same.
     let steps = [
         (Accepted::default(), Unmeasured::ALL),
-        (Accepted { cameras, ..Accepted::default() }, Unmeasured { mount: true, lenses: false }),
-        (Accepted { cameras, mounted: Some(mounted), ..Accepted::default() }, Unmeasured::default()),
+        (Accepted { cameras, ..Accepted::default() }, Unmeasured { lenses: false, ..Unmeasured::ALL }),
+        (
+            Accepted { cameras, mounted: Some(mounted), ..Accepted::default() },
+            Unmeasured { neck: true, ..Unmeasured::default() },
+        ),
     ];
     let models = steps.map(|(accepted, unmeasured)| {
         let model = accepted.robot_model(&rig).expect("it fits");

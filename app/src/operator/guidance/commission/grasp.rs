@@ -1,6 +1,6 @@
 //! The first grasp on the way.
 
-use plumbline_engine::view::{GraspOutcome, GraspPhase};
+use plumbline_engine::view::{GateState, GraspOutcome, GraspPhase, WARMTH};
 use plumbline_engine::{HandStep, View};
 
 use super::super::{grasp, robot};
@@ -43,6 +43,12 @@ pub(super) fn said(view: &View) -> Said {
     if let Some(in_hand) = &of_view.held {
         return grasp::in_hand(in_hand, run.map(|run| &**run)).into();
     }
+    let cold = of_view.gates.iter().find(|gate| gate.name == WARMTH && gate.state == GateState::Doubtful);
+    if let Some(cold) = cold.filter(|_| view.twin.running && view.eyes.health.colder_wait_min.is_some()) {
+        let warm = RobotAction::WarmUp;
+        let sentence = format!("{} Warming moves nothing.", cold.text);
+        return Said::press(sentence, warm.label(), vec![Action::Robot(warm)]).warn();
+    }
     if of_view.target.class.as_deref() != Some(FIRST_CLASS) || !is_laid_out(view) {
         return lay_out(view, run.is_some());
     }
@@ -60,6 +66,10 @@ pub(super) fn said(view: &View) -> Said {
             format!("{} It is tried once more. {grasps}", closed(why))
         }
         _ => grasps.to_owned(),
+    };
+    let sentence = match cold {
+        Some(cold) => format!("{} {sentence}", cold.text),
+        None => sentence,
     };
     Said::press(sentence, "Grasp the tomato", vec![Action::Grasp(GraspAction::Grasp)])
 }
