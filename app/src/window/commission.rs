@@ -87,7 +87,9 @@ fn next(window: &PlumblineWindow, course: &Course, ui: &mut Ui, outbox: &mut Out
             }
         }
         Press::Wait { why, fraction } => {
-            let button = egui::Button::new("Wait").min_size(egui::vec2(120.0, 34.0));
+            // While STOP is latched nothing goes on by waiting.
+            let label = if window.view.robot.stopped { "Stopped" } else { "Wait" };
+            let button = egui::Button::new(label).min_size(egui::vec2(120.0, 34.0));
             ui.add_enabled(false, button).on_disabled_hover_text(why);
             if let Some(fraction) = fraction {
                 ui.add(ProgressBar::new(*fraction as f32).desired_width(140.0).desired_height(6.0));

@@ -142,6 +142,15 @@ fn a_joint_that_fell_silent_is_taken_hold_of_before_the_way_goes_on() {
 }
 
 #[test]
+fn while_stop_is_latched_nothing_seems_to_be_waited_for() {
+    let mut view = at(CommissionStep::Mount);
+    Arc::make_mut(&mut view.robot).stopped = true;
+    let window = Fake::over(view).window(on(Screen::Mount));
+    assert!(shows(&window, "Stopped") && !shows(&window, "Wait") && !says(&window, "Next: "));
+    assert!(says(&window, "nothing moves until you press Release STOP"));
+}
+
+#[test]
 fn while_the_board_is_shown_there_is_nothing_to_press() {
     let mut view = at(CommissionStep::Eyes);
     Arc::make_mut(&mut view.twin).board = Some(lying_board());

@@ -225,15 +225,28 @@ fn checked(view: &View, touched: &str) -> Guidance {
             Worth::Harm => say(said).warn().then("Go to Gap", Action::Go(Screen::Gap)),
         };
     }
-    let mean = format::mm(figures.mean_m);
-    let before = before_check_m(view, figures.mean_m)
-        .map_or_else(String::new, |before_m| format!(", {} without a model", format::mm(before_m)));
-    let said = format!("{touched} checked: the finger lands {mean} beside the target, on average{before}.");
+    let said = format!("{touched} checked: {}", lands(view, figures.mean_m));
     if touch.correct_with.is_some() {
         return say(format!("{said} It stands on the timeline. Next: grasp."))
             .then("Go to Grasp", Action::Go(Screen::Grasp));
     }
     say(format!("{said} Nothing corrected these targets.")).then("Plan new targets", again)
+}
+
+/// How far beside its target the finger lands, and did without a model, a sentence.
+fn lands(view: &View, mean_m: f64) -> String {
+    let before = before_check_m(view, mean_m)
+        .map_or_else(String::new, |before_m| format!(", {} without a model", format::mm(before_m)));
+    format!("the finger lands {} beside the target, on average{before}.", format::mm(mean_m))
+}
+
+/// What came of a check that is over, a sentence; `None`: nothing was checked, or it proved something, which says more.
+pub fn check_in_words(view: &View) -> Option<String> {
+    let touch = &view.touch;
+    let options = &touch.plan.as_ref()?.options;
+    let is_over = touch.phase == TouchPhase::Finished && options.purpose == Purpose::Check;
+    let figures = touch.figures.filter(|_| is_over && !options.beside_described)?;
+    Some(capitalized(&lands(view, figures.mean_m)))
 }
 
 /// A check on the timeline is the one that is shown when both miss by the same, m.

@@ -18,8 +18,12 @@ const NEAR_M: f64 = 0.03;
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let view = cx.view.handeye.clone();
     let Some(summary) = view.proposal.as_ref().or(view.in_use.as_ref()) else {
+        let title = match view.is_looking {
+            true => "The hands are being looked at",
+            false => "No hands were looked at yet",
+        };
         let message = plumbline_widgets::empty::Message::new(
-            "No hands were looked at yet",
+            title,
             "The map then shows where each hand was held, and how far beside that the eyes saw it.",
         );
         plumbline_widgets::empty::EmptyState::empty(message).show(ui);

@@ -12,6 +12,7 @@ use plumbline_widgets::theme::{self, Role, space};
 
 use super::parts::error_length_m;
 use super::words;
+use crate::operator::guidance::check_in_words;
 use crate::operator::words::proof::Proof;
 use crate::operator::{Action, Screen, TouchAction, done_of, is_under_way, wanted};
 use crate::panels::parts::{action_button, warning};
@@ -104,7 +105,13 @@ fn finished(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     if let Some(name) = cx.view.touch.session.as_ref().and_then(|path| path.file_name()) {
         ui.label(theme::small(ui, format!("Session {}", name.to_string_lossy())));
     }
-    if let Some(placement) = cx.view.touch.placement_proposal.clone() {
+    if let Some(checked) = check_in_words(cx.view) {
+        ui.label(checked);
+    }
+    // A place that another run measured stands in the tile of the place.
+    if let Some(placement) =
+        cx.view.touch.placement_proposal.clone().filter(|_| !cx.view.touch.proposal_is_older)
+    {
         ui.add_space(space::XS);
         super::place::figures(ui, &placement, "proposed");
         ui.horizontal(|ui| {
