@@ -292,7 +292,9 @@ fn first(view: &View) -> Guidance {
 mod tests {
     use std::sync::Arc;
 
-    use plumbline_engine::view::{EntryKind, TimelineEntry, TimelineView};
+    use plumbline_engine::view::{EntryKind, TimelineEntry, TimelineView, TouchFigures};
+    use plumbline_model::robot::default_rig;
+    use plumbline_model::touch_plan::{PlanOptions, TouchArea};
 
     use super::*;
 
@@ -316,6 +318,43 @@ mod tests {
             timeline: Arc::new(TimelineView { is_known: true, entries, ..TimelineView::default() }),
             ..View::default()
         }
+    }
+
+    #[test]
+    fn a_check_that_is_over_says_how_far_the_finger_lands_and_nothing_else_does() {
+        let of = |phase: TouchPhase, purpose: Purpose| {
+            let area = TouchArea::within(&default_rig().touchscreen, 0.02);
+            let options = PlanOptions::few(area, purpose, 1);
+            let plan = PlanView {
+                options,
+                reachable: 6,
+                refusals: vec![],
+                duration: std::time::Duration::from_secs(60),
+                model: Arc::from(""),
+                score: None,
+                postures: Arc::from([]),
+            };
+            let figures = TouchFigures {
+                count: 6,
+                mean_m: 0.93e-3,
+                mean_interval_m: [0.5e-3, 1.4e-3],
+                largest_m: 2e-3,
+                bias_m: [0.0; 2],
+                noise_m: None,
+                repeats: 0,
+            };
+            let touch = TouchView {
+                phase,
+                plan: Some(Arc::new(plan)),
+                figures: Some(figures),
+                ..TouchView::default()
+            };
+            check_in_words(&View { touch: Arc::new(touch), ..check(Some(5.88e-3), 0.93e-3) })
+        };
+        let said = of(TouchPhase::Finished, Purpose::Check).expect("it is over");
+        assert_eq!(said, "The finger lands 0.93 mm beside the target, on average, 5.88 mm without a model.");
+        assert_eq!(of(TouchPhase::Planned, Purpose::Check), None);
+        assert_eq!(of(TouchPhase::Finished, Purpose::Train), None);
     }
 
     #[test]
