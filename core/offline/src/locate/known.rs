@@ -29,6 +29,9 @@ const NO_MOUNT: &str = "The ± of places in the robot's frame is wide because no
 const MOUNT_OF_FILE: &str = "The ± of places in the robot's frame leaves out how well the mount of the eyes is known: the \
      rig file has a mount of its own and does not say it. Name the file of the calibrated mount with --mount.";
 
+const NECK: &str = "The ± of places in the robot's frame is wide because nobody measured where the head looks straight ahead, \
+     which no board tells: it holds how far zeros of necks usually are off. Looking at the hands measures it.";
+
 const TURNED: &str = "The ± of places in the robot's frame is wide because the eyes were not as warm as when they were \
      calibrated: it holds how far eyes usually turn meanwhile.";
 
@@ -133,7 +136,8 @@ impl Known {
         match self.mount_of_file {
             true => Some(MOUNT_OF_FILE),
             false if self.model.unmeasured().mount => Some(NO_MOUNT),
-            false => self.model.turned_since(&self.seen).counts().then_some(TURNED),
+            false if self.model.turned_since(&self.seen).counts() => Some(TURNED),
+            false => self.model.unmeasured().neck.then_some(NECK),
         }
     }
 

@@ -89,7 +89,8 @@ pub fn nodding(rig: &Rig) -> RigModel {
         shape: None,
         reference_s: 0.0,
         values: vec![NOD_RAD],
-        covariance: vec![1e-4],
+        // Less well known than the zero of the neck's turn is beforehand.
+        covariance: vec![2e-3],
         probability: None,
         parameters: vec![],
     }];
