@@ -49,13 +49,23 @@ pub(super) fn handeye(view: &View) -> Guidance {
     }
 }
 
-/// What speaks against looking now goes first. Eyes of a twin get warm at a press.
+/// Eyes of a twin that are colder than when they were calibrated get warm at a press; `None`: that is not what makes it
+/// doubtful.
+pub(super) fn to_be_warmed(view: &View, doubt: &Gate) -> Option<Guidance> {
+    let is_cold = doubt.name == WARMTH && view.eyes.health.colder_wait_min.is_some();
+    let warm = RobotAction::WarmUp;
+    (is_cold && view.twin.running).then(|| {
+        let sentence = format!("{} Warming moves nothing.", doubt.text);
+        say(sentence).warn().then(warm.label(), Action::Robot(warm))
+    })
+}
+
+/// What speaks against looking now goes first.
 fn doubtful(view: &View, doubt: &Gate, moves: &str) -> Guidance {
-    let why = &doubt.text;
-    if doubt.name == WARMTH && view.twin.running && view.eyes.health.colder_wait_min.is_some() {
-        let warm = RobotAction::WarmUp;
-        return say(format!("{why} Warming moves nothing.")).warn().then(warm.label(), Action::Robot(warm));
+    if let Some(warm) = to_be_warmed(view, doubt) {
+        return warm;
     }
+    let why = &doubt.text;
     let label = if view.handeye.in_use.is_some() { "Look again" } else { HandEyeAction::Look.label() };
     say(format!("{why} {moves}")).warn().then(label, Action::HandEye(HandEyeAction::Look))
 }

@@ -3,7 +3,7 @@
 use plumbline_engine::view::{GateState, GraspOutcome, GraspPhase, WARMTH};
 use plumbline_engine::{HandStep, View};
 
-use super::super::{grasp, robot};
+use super::super::{grasp, handeye, robot};
 use super::Said;
 use crate::operator::actions::{FIRST_CLASS, FIRST_PLACE_M};
 use crate::operator::words::grasp::{closed, holds};
@@ -44,10 +44,8 @@ pub(super) fn said(view: &View) -> Said {
         return grasp::in_hand(in_hand, run.map(|run| &**run)).into();
     }
     let cold = of_view.gates.iter().find(|gate| gate.name == WARMTH && gate.state == GateState::Doubtful);
-    if let Some(cold) = cold.filter(|_| view.twin.running && view.eyes.health.colder_wait_min.is_some()) {
-        let warm = RobotAction::WarmUp;
-        let sentence = format!("{} Warming moves nothing.", cold.text);
-        return Said::press(sentence, warm.label(), vec![Action::Robot(warm)]).warn();
+    if let Some(warm) = cold.and_then(|cold| handeye::to_be_warmed(view, cold)) {
+        return warm.into();
     }
     if of_view.target.class.as_deref() != Some(FIRST_CLASS) || !is_laid_out(view) {
         return lay_out(view, run.is_some());
