@@ -205,7 +205,7 @@ fn shown(text: &mut String, shown: &Shown, is_noise_known: bool) {
         of(shown.before),
         of(shown.after)
     ));
-    if let Some(closure) = shown.closure {
+    if let Some(closure) = shown.closure.filter(|_| is_noise_known) {
         let range = shown.closure_range.map_or_else(String::new, |[low, high]| {
             format!(" ({} to {}, 95 %)", format::percent(low), format::percent(high))
         });
@@ -213,11 +213,11 @@ fn shown(text: &mut String, shown: &Shown, is_noise_known: bool) {
     }
     if let Some(unseen) = &shown.unseen {
         text.push_str(&format!(
-            "  {}, held out as a whole: {} before, {} after, noise {}\n",
+            "  {}, held out as a whole: {} before, {} after{}\n",
             unseen.what,
             of(unseen.before),
             of(unseen.after),
-            of(unseen.floor)
+            if is_noise_known { format!(", noise {}", of(unseen.floor)) } else { String::new() }
         ));
     }
 }

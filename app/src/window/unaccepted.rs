@@ -3,9 +3,9 @@
 use egui::Ui;
 use plumbline_engine::View;
 use plumbline_model::listed;
-use plumbline_model::touch_plan::Purpose;
 
 use super::sheet::{Asked, buttons, title};
+use crate::operator::guidance::is_screen_to_be_decided;
 
 /// What was solved, is proposed, and is kept nowhere before it is accepted.
 pub(super) fn unaccepted(view: &View) -> Vec<&'static str> {
@@ -20,12 +20,10 @@ pub(super) fn unaccepted(view: &View) -> Vec<&'static str> {
     of.into_iter().filter_map(|(is_open, what)| is_open.then_some(what)).collect()
 }
 
-/// Touches to learn from measure the place of a screen that was placed, too: nobody waits for that.
+/// An older place beside one that is in use was passed over already.
 fn is_place_open(view: &View) -> bool {
     let touch = &view.touch;
-    let purpose = touch.plan.as_ref().map(|plan| plan.options.purpose);
-    let is_asked_for = !touch.proposal_is_older && purpose != Some(Purpose::Train);
-    touch.placement_proposal.is_some() && (touch.placement.is_none() || is_asked_for)
+    is_screen_to_be_decided(touch) && (touch.placement.is_none() || !touch.proposal_is_older)
 }
 
 /// Of models that were trained on the same touches one is enough.

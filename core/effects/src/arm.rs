@@ -4,7 +4,7 @@ use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use plumbline_model::robot::{Description, DescriptionError, Joint, JointIndex, JointKind, LinkIndex, Rig};
 
 /// Standard gravity along the robot's z, m/s².
-const GRAVITY_M_S2: f64 = -9.80665;
+pub(crate) const GRAVITY_M_S2: f64 = -9.80665;
 
 /// The arm from the base to a tip.
 #[derive(Clone, Debug)]

@@ -40,6 +40,12 @@ impl Finding {
     pub fn is_all_clear(&self) -> bool {
         self.verdict == Verdict::NoGap && self.comparison.is_noise_known()
     }
+
+    /// How much of the gap closes on rows that were not used; `None` too where nothing tells the noise: what the best
+    /// model leaves was taken for it, and against that every model that is found closes all.
+    pub fn told_closure(&self) -> Option<f64> {
+        self.shown.closure.filter(|_| self.comparison.is_noise_known())
+    }
 }
 
 /// All that a search found.

@@ -6,7 +6,7 @@ mod common;
 use common::{Plan, elbow_zero, places, poses, touches};
 use plumbline_effects::Measurements;
 use plumbline_gap::{Finding, GapError, Options, Verdict, find};
-use plumbline_model::{Cancelled, JobContext, Unattended};
+use plumbline_model::{Cancelled, CancelledFrom, JobContext, Unattended};
 use rand::SeedableRng;
 use rand::rngs::StdRng;
 use rand::seq::SliceRandom;
@@ -127,30 +127,16 @@ fn work_stops_when_cancelled() {
 
 #[test]
 fn work_stops_soon_when_cancelled_midway() {
-    /// Cancels after a time.
-    struct Until(std::time::Instant, std::sync::Mutex<String>);
-    impl JobContext for Until {
-        fn checkpoint(&self) -> Result<(), Cancelled> {
-            if std::time::Instant::now() > self.0 { Err(Cancelled) } else { Ok(()) }
-        }
-        fn report(&self, _fraction: f64, doing: &str) {
-            doing.clone_into(&mut self.1.lock().expect("not poisoned"));
-        }
-    }
     let measurements = touches(&Plan { places: 600, repeats: 2, ..Plan::default() }, &[elbow_zero(0.05)], 1);
     for milliseconds in [5, 60, 200, 500, 1200, 2500] {
-        let at = std::time::Instant::now() + std::time::Duration::from_millis(milliseconds);
-        let until = Until(at, std::sync::Mutex::default());
+        let until = CancelledFrom::after(std::time::Duration::from_millis(milliseconds));
         let cancelled = find(&measurements, &Options::default(), &until);
-        let late = std::time::Instant::now().saturating_duration_since(at);
+        let late = until.late();
         if cancelled == Err(GapError::Cancelled(Cancelled)) {
-            let doing = until.1.into_inner().expect("not poisoned");
+            let doing = until.doing();
             println!("cancelled at {milliseconds} ms ({doing}), stopped {} ms later", late.as_millis());
-            // 100 ms is the aim, on a machine of its own; tests share theirs. Working out what all
-            // candidates do together is one piece of a second or two.
-            let piece = doing.starts_with("looking through sets");
-            let limit = if piece { 10_000 } else { 500 };
-            assert!(late.as_millis() < limit, "{} ms ({doing})", late.as_millis());
+            // 200 ms is the aim, on a machine of its own (`./plumbline bench` says it); tests share theirs.
+            assert!(late.as_millis() < 1000, "{} ms ({doing})", late.as_millis());
         }
     }
 }

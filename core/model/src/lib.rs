@@ -47,7 +47,7 @@ pub use frame::{
     Board, Direction, Frame, LeftCamera, LeftRectified, Point, Pose, RightCamera, RightRectified, Robot,
 };
 pub use image_pair::{Beside, EyesThen, Stamp, StereoFrame};
-pub use job::{Cancelled, JobContext, Unattended};
+pub use job::{Cancelled, CancelledFrom, JobContext, Unattended};
 pub use pixel::{Eye, Pixel, PixelSpace, Raw, Rectified};
 pub use session::{Session, SessionError};
 pub use stereo::StereoCameras;

@@ -5,8 +5,8 @@
 //!
 //! Cases are kept under `target/blind`, so that a search can be repeated without the physics. Without `--threads` there
 //! are as many as the machine runs at a time; the answers do not depend on it (with held-out rows one thing does: rows are
-//! held out one by one only where that is quick). `--kind` picks the cases that were to hide one of these first, of touches
-//! only. `--dump` writes a line of JSON about each effect that is listed,
+//! held out one by one only where that is quick). `--kind` picks the cases that were to hide one of these first.
+//! `--dump` writes a line of JSON about each effect that is listed,
 //! [`plumbline_blind::names::Line`].
 
 #![allow(clippy::print_stdout)]
@@ -158,7 +158,7 @@ struct Order<'a> {
     number: usize,
     family: Family,
     plan: Plan,
-    /// What it was to hide first, of touches.
+    /// What it was to hide first,.
     kind: Option<&'static str>,
     make: Box<dyn Fn() -> Result<Case, BlindError> + Send + Sync + 'a>,
 }
@@ -179,20 +179,23 @@ fn orders<'a>(arguments: &Arguments, bench: &'a Bench, planner: &'a Planner<'a>)
     match arguments.generator {
         Source::Lean => touches(Generator::Lean),
         Source::Worn => touches(Generator::Worn),
-        Source::Arms => of_wishes(arms::recipes(arguments.cases, arguments.seed), arms::make),
-        Source::Eyes => of_wishes(eyes::recipes(arguments.cases, arguments.seed), eyes::make),
+        Source::Arms => {
+            of_wishes(arms::recipes(arguments.cases, arguments.seed), arms::make, |kind| kind.into())
+        }
+        Source::Eyes => of_wishes(eyes::recipes(arguments.cases, arguments.seed), eyes::make, eyes::Kind::id),
     }
 }
 
 fn of_wishes<'a, K: Kinds + Send + Sync>(
     wishes: Vec<Wish<K>>,
     make: fn(&Wish<K>) -> Result<Case, BlindError>,
+    id: fn(K) -> &'static str,
 ) -> Vec<Order<'a>> {
     let order = |wish: Wish<K>| Order {
         number: wish.number,
         family: wish.family,
         plan: wish.plan,
-        kind: None,
+        kind: wish.kind.map(id),
         make: Box::new(move || make(&wish)),
     };
     wishes.into_iter().map(order).collect()

@@ -23,7 +23,13 @@ pub fn search(folder: &Path, options: &Options) -> Result<Verdict, AnyError> {
 }
 
 /// Searches the sessions of one robot in some folders together.
+#[allow(dead_code, reason = "who takes times reads and searches apart")]
 pub fn search_all(folders: &[impl AsRef<Path>], options: &Options) -> Result<Finding, AnyError> {
+    Ok(find(&read_all(folders)?, options, &Unattended)?)
+}
+
+/// What the sessions of one robot in some folders measured.
+pub fn read_all(folders: &[impl AsRef<Path>]) -> Result<Measurements, AnyError> {
     let mut sessions = vec![];
     let mut rig = None;
     for folder in folders {
@@ -37,8 +43,7 @@ pub fn search_all(folders: &[impl AsRef<Path>], options: &Options) -> Result<Fin
         }
         sessions.push((folder.display().to_string(), session));
     }
-    let measurements = Measurements::of_sessions(&sessions, &rig.ok_or("no session")?)?;
-    Ok(find(&measurements, options, &Unattended)?)
+    Ok(Measurements::of_sessions(&sessions, &rig.ok_or("no session")?)?)
 }
 
 /// A finding as the command line prints it, as far as it is judged.

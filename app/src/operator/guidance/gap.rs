@@ -2,11 +2,10 @@
 
 use plumbline_engine::View;
 use plumbline_engine::view::{GapView, ShownFinding};
-use plumbline_widgets::format;
 
 use super::sentence::{Guidance, say};
 use crate::operator::snapshot::gap::Verdict;
-use crate::operator::words::gap::{add_label, touch_label};
+use crate::operator::words::gap::{add_label, on_held_out, touch_label};
 use crate::operator::words::proof::{Proof, Worth, proven_before};
 use crate::operator::{Action, GapAction, Screen};
 
@@ -76,9 +75,9 @@ fn added(view: &View, shown: &ShownFinding, experiment: bool) -> Guidance {
     if let Some(before) = proven_before(view) {
         return say(before).then("Find what is left", Action::Gap(GapAction::Find));
     }
-    let closed = shown.finding.shown.closure.map_or_else(String::new, |closure| {
-        format!(" On held-out rows {} of the gap is closed.", format::percent(closure))
-    });
+    let closed = on_held_out(&shown.finding, "By what was found here, on held-out rows");
+    // What was measured since, such as the hands, is in the model, too.
+    let closed = closed.map_or_else(String::new, |closed| format!(" {closed}"));
     let said = format!("The model in use is {}.{closed}", view.gap.model.name);
     // Planning needs no robot, touching does.
     if view.robot.connection.is_connected() && GapAction::Prove.refusal(view).is_none() {

@@ -152,7 +152,7 @@ pub fn done_of(counts: TouchCounts) -> usize {
 fn finished(view: &View) -> Guidance {
     let touch = &view.touch;
     let purpose = touch.plan.as_ref().map(|plan| plan.options.purpose);
-    if is_screen_to_be_decided(touch, purpose)
+    if is_screen_to_be_decided(touch)
         && let Some(place) = &touch.placement_proposal
     {
         let said = measured(place);
@@ -202,7 +202,8 @@ pub fn measured(place: &ScreenPlacement) -> String {
 
 /// Whether a measured place of the screen is what the operator waits for. Touches that were made for something
 /// else measure it as well: what they were made for goes first, and their place waits beside them.
-fn is_screen_to_be_decided(touch: &TouchView, purpose: Option<Purpose>) -> bool {
+pub fn is_screen_to_be_decided(touch: &TouchView) -> bool {
+    let purpose = touch.plan.as_ref().map(|plan| plan.options.purpose);
     let measured_for_it = matches!(purpose, Some(Purpose::PlaceScreen) | None);
     touch.placement_proposal.is_some() && (touch.placement.is_none() || measured_for_it)
 }
@@ -269,8 +270,7 @@ fn before_check_m(view: &View, mean_m: f64) -> Option<f64> {
 fn first(view: &View) -> Guidance {
     let touch = &view.touch;
     debug_assert!(!is_under_way(&touch.phase));
-    let purpose = touch.plan.as_ref().map(|plan| plan.options.purpose);
-    if is_screen_to_be_decided(touch, purpose) {
+    if is_screen_to_be_decided(touch) {
         return finished(view);
     }
     if !touch.unfinished.is_empty() {

@@ -125,9 +125,31 @@ pub fn knowledge(knowledge: &Knowledge, candidates: &[Candidate]) -> (&'static s
     }
 }
 
+/// "On held-out rows 92 % of the gap is closed.", or from what to what the error falls, where nothing tells the noise.
+pub fn on_held_out(finding: &Finding, on: &str) -> Option<String> {
+    let shown = &finding.shown;
+    shown.closure?;
+    Some(match finding.told_closure() {
+        Some(closure) => format!("{on} {} of the gap is closed.", format::percent(closure)),
+        None => format!(
+            "{on} the error falls from {} to {}.",
+            error(shown, shown.before),
+            error(shown, shown.after)
+        ),
+    })
+}
+
+/// What stands for the noise in a picture of a finding.
+pub fn floor_name(finding: &Finding) -> &'static str {
+    if finding.comparison.is_noise_known() { "noise alone" } else { "the best model leaves" }
+}
+
 /// "92 % of the gap is closed (95 % interval: 85 to 97 %)."
-pub fn closure(shown: &Shown) -> Option<String> {
-    let closure = shown.closure?;
+pub fn closure(finding: &Finding) -> Option<String> {
+    let shown = &finding.shown;
+    let Some(closure) = finding.told_closure() else {
+        return on_held_out(finding, "On rows that were not used");
+    };
     let range = shown.closure_range.map_or_else(String::new, |[low, high]| {
         let low = format::percent(low);
         format!(" (95 % interval: {} to {})", low.trim_end_matches(" %"), format::percent(high))
@@ -261,6 +283,22 @@ mod tests {
         finding.shown.after = 2.6 * finding.shown.floor;
         let (is_noise, said) = rest(&finding);
         assert!(!is_noise && said.contains("7.75 mm") && said.contains("2.98 mm"), "{said}");
+    }
+
+    #[test]
+    fn where_nothing_tells_the_noise_no_share_of_the_gap_is_said_to_close() {
+        let known = sample::named();
+        let mut unknown = known.clone();
+        unknown.comparison.floor_source = without_noise().comparison.floor_source;
+        for (finding, is_known) in [(known, true), (unknown, false)] {
+            let said = [closure(&finding), on_held_out(&finding, "On held-out rows")]
+                .map(|said| said.expect("judged"));
+            for said in said {
+                assert_eq!(said.contains('%') && said.contains("of the gap"), is_known, "{said}");
+                assert_eq!(said.contains("falls from"), !is_known, "{said}");
+            }
+            assert_eq!(floor_name(&finding) == "noise alone", is_known);
+        }
     }
 
     #[test]

@@ -185,7 +185,17 @@ fn side_by_side(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             ("verdict", of(&|s| words::heading(&s.finding).to_owned())),
             ("before", of(&|s| words::error(&s.finding.shown, s.finding.shown.before))),
             ("after", of(&|s| words::error(&s.finding.shown, s.finding.shown.after))),
-            ("noise alone", of(&|s| words::error(&s.finding.shown, s.finding.shown.floor))),
+            (
+                "noise alone",
+                of(&|s| {
+                    let known = s.finding.comparison.is_noise_known();
+                    if known {
+                        words::error(&s.finding.shown, s.finding.shown.floor)
+                    } else {
+                        "not known".to_owned()
+                    }
+                }),
+            ),
             (
                 "unexplained, p",
                 of(&|s| plumbline_widgets::format::significant(s.finding.unexplained.p_value, 2)),

@@ -42,7 +42,7 @@ pub fn show(ui: &mut Ui, view: &View, _state: &mut PanelState, _outbox: &mut Out
             &[
                 KeyValue::text("before", words::error(held_out, held_out.before)),
                 KeyValue::text("after", words::error(held_out, held_out.after)),
-                KeyValue::text("noise alone", words::error(held_out, held_out.floor)),
+                KeyValue::text(words::floor_name(finding), words::error(held_out, held_out.floor)),
             ],
         );
     }

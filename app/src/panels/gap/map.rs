@@ -31,7 +31,10 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             let options = [(Errors::Before, "Before"), (Errors::After, "After"), (Errors::Both, "Both")];
             choice(ui, "Errors of the gap", &mut cx.state.gap.errors, &options);
             let floor = words::error(&shown.finding.shown, shown.finding.shown.floor);
-            ui.add(egui::Label::new(theme::small(ui, format!("noise alone: {floor}"))).extend());
+            ui.add(
+                egui::Label::new(theme::small(ui, format!("{}: {floor}", words::floor_name(&shown.finding))))
+                    .extend(),
+            );
         });
         ui.add_space(space::XS);
         let errors = cx.state.gap.errors;

@@ -3,10 +3,10 @@
 use egui::{Checkbox, Frame, Margin, Panel, RichText, ScrollArea, Ui};
 use plumbline_engine::view::{ShownFinding, Subject};
 use plumbline_engine::{GapCommand, View};
-use plumbline_widgets::format;
 use plumbline_widgets::glyph::Glyph;
 use plumbline_widgets::probability::{self, ShareRow, probability_bar, share_rows};
 use plumbline_widgets::theme::{self, Role, space};
+use plumbline_widgets::{format, parameter};
 
 use super::parts::{finding, line, state};
 use super::sizes::sizes;
@@ -54,7 +54,7 @@ fn proven(ui: &mut Ui, view: &View) {
     };
     line(ui, sign, role, &proof.headline());
     ui.label(theme::small(ui, proof.figures()));
-    let closure = view.gap.finding().and_then(|finding| finding.shown.closure);
+    let closure = view.gap.finding().and_then(|finding| finding.told_closure());
     if let Some(why) = proof.beside_held_out(closure) {
         ui.label(theme::small(ui, why));
     }
@@ -147,8 +147,8 @@ fn card(ui: &mut Ui, cx: &mut PanelContext<'_>, shown: &ShownFinding, i: usize) 
         // Below each other: titles are long, and a tile is narrow.
         head(ui, cx, shown, i);
         if added {
-            let text = RichText::new("in the model").color(Role::Accepted.color(tokens));
-            ui.label(text);
+            let text = in_model(cx.view, effect);
+            ui.label(RichText::new(text).color(Role::Accepted.color(tokens)));
         }
         sizes(ui, effect, &shown.finding.shown);
         let is_weak = shown.finding.verdict == Verdict::NotInLibrary || shown.finding.many.is_some();
@@ -168,6 +168,28 @@ fn card(ui: &mut Ui, cx: &mut PanelContext<'_>, shown: &ShownFinding, i: usize) 
             line(ui, Glyph::Warning, Role::Warning, &format!("Cannot be added: {why}"));
         }
     });
+}
+
+/// That an effect is in the model, and how large it is there where that is another size than here: what was measured
+/// later, such as the hands, is taken into it.
+fn in_model(view: &View, found: &NamedEffect) -> String {
+    let name = format!("{}@{}", found.id, found.site);
+    let there = view.gap.model.effects.iter().find(|there| there.name == name || there.name == found.id);
+    let Some(there) = there else { return "in the model".to_owned() };
+    let told: Vec<String> = found
+        .parameters
+        .iter()
+        .filter(|found| found.is_told() && found.text.is_none())
+        .filter_map(|found| {
+            let (name, now, _) = there.parameters.iter().find(|(name, ..)| *name == found.name)?;
+            let [was, now] = [found.value, *now].map(|value| parameter::value(name, value));
+            (was != now).then(|| format!("{} {now}", parameter::words(name)))
+        })
+        .collect();
+    match told.as_slice() {
+        [] => "in the model".to_owned(),
+        told => format!("in the model, by what was measured since: {}", told.join(", ")),
+    }
 }
 
 /// The title, with a check mark where it can be added beside others.

@@ -43,7 +43,7 @@ fn bars(ui: &mut Ui, cx: &PanelContext<'_>, shown: &ShownFinding) {
         ui.label(theme::weak(ui, "This finding was not judged on held-out rows."));
         return;
     }
-    if let Some(closed) = words::closure(held_out) {
+    if let Some(closed) = words::closure(&shown.finding) {
         ui.label(theme::strong(ui, closed));
     } else if shown.finding.verdict == Verdict::NotInLibrary {
         ui.label(theme::strong(ui, "Nothing can be added, so nothing is closed."));
@@ -76,7 +76,8 @@ fn bars(ui: &mut Ui, cx: &PanelContext<'_>, shown: &ShownFinding) {
         rows.push(row("Before", "the other", other.before, None, Role::Weak));
         rows.push(row("After", "the other", other.after, after_range(other), Role::Weak));
     }
-    let levels = [Level { name: "noise alone", value: held_out.floor, role: Role::NoiseFloor }];
+    let levels =
+        [Level { name: words::floor_name(&shown.finding), value: held_out.floor, role: Role::NoiseFloor }];
     Intervals::new("Gap on held-out rows", &rows, quantity).levels(&levels).show(ui);
     let worst = held_out.worst_tenth.map(|error| words::error(held_out, error));
     let count = format::count(held_out.rows, "row");
@@ -94,9 +95,10 @@ fn bars(ui: &mut Ui, cx: &PanelContext<'_>, shown: &ShownFinding) {
     };
     if let Some(unseen) = &held_out.unseen {
         said.push_str(&format!(
-            " Unseen: {}, {} held out as a whole; noise alone would leave {}.",
+            " Unseen: {}, {} held out as a whole; {}: {}.",
             unseen.what,
             format::count(unseen.rows, "row"),
+            words::floor_name(&shown.finding),
             words::error(held_out, unseen.floor)
         ));
     }

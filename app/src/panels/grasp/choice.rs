@@ -61,6 +61,10 @@ fn methods(ui: &mut Ui, cx: &mut PanelContext<'_>) {
                 cx.outbox.send(GraspCommand::Method(known.method));
             }
         }
+        if let Some(chosen) = grasp.methods.iter().find(|known| grasp.method == Some(known.method)) {
+            ui.add_space(space::S);
+            ui.label(theme::small(ui, chosen.about));
+        }
     });
 }
 

@@ -12,7 +12,7 @@ use plumbline_widgets::theme::{self, Role, space};
 
 use super::parts::error_length_m;
 use super::words;
-use crate::operator::guidance::check_in_words;
+use crate::operator::guidance::{check_in_words, is_screen_to_be_decided};
 use crate::operator::words::proof::Proof;
 use crate::operator::{Action, Screen, TouchAction, done_of, is_under_way, wanted};
 use crate::panels::parts::{action_button, warning};
@@ -108,10 +108,9 @@ fn finished(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     if let Some(checked) = check_in_words(cx.view) {
         ui.label(checked);
     }
-    // A place that another run measured stands in the tile of the place.
-    if let Some(placement) =
-        cx.view.touch.placement_proposal.clone().filter(|_| !cx.view.touch.proposal_is_older)
-    {
+    // A place that another run measured, or touches that were made for something else, stands in the tile of the place.
+    let is_decided_here = is_screen_to_be_decided(&cx.view.touch) && !cx.view.touch.proposal_is_older;
+    if let Some(placement) = cx.view.touch.placement_proposal.clone().filter(|_| is_decided_here) {
         ui.add_space(space::XS);
         super::place::figures(ui, &placement, "proposed");
         ui.horizontal(|ui| {

@@ -4,7 +4,7 @@
 use super::known::Known;
 use super::report::Fit;
 use super::{Effect, Parameter, Reported, Situation};
-use crate::arm::Deviation;
+use crate::arm::{Deviation, GRAVITY_M_S2};
 use crate::eyes::{EyeSituation, EyesDeviation};
 
 /// All that is known of a kind of effect.
@@ -175,6 +175,13 @@ impl Turning<'_> {
 
     pub fn torque_nm(&self) -> f64 {
         self.situation.torques_nm[self.joint]
+    }
+
+    /// What all that the joint bears would turn it by were it at the hand, N m.
+    pub fn torque_of_weight_at_hand_nm(&self) -> f64 {
+        let situation = self.situation;
+        let bears_n = situation.weights_n.get(self.joint).map_or(0.0, |weight| weight.norm());
+        bears_n / GRAVITY_M_S2.abs() * situation.torques_per_kg_nm[self.joint]
     }
 
     pub fn direction(&self) -> f64 {

@@ -17,7 +17,7 @@ fn about(method: Method) -> &'static str {
         Method::M2 => "a network of touches corrects sideways, heights from touches",
         Method::M3 => "a network of touches corrects all three",
         Method::M4 => "as described, then the detected hand is brought over the object",
-        Method::M5 => "with the named effects, then the rendered hand is brought over the object",
+        Method::M5 => "named effects, then the hand is brought over it by sight",
     }
 }
 

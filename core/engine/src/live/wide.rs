@@ -8,7 +8,9 @@ use plumbline_effects::robot_model::{Turned, Unmeasured};
 /// calibration of the eyes says how well it is known. `turned`: how far the eyes usually have turned since.
 pub fn wide_because(unmeasured: Unmeasured, is_told: bool, turned: Turned) -> Option<&'static str> {
     match unmeasured {
-        Unmeasured { mount: false, lenses: false, .. } if turned.counts() => Some(TURNED),
+        Unmeasured { mount: false, lenses: false, neck } if turned.counts() => {
+            Some(if neck { TURNED_AND_NECK } else { TURNED })
+        }
         Unmeasured { mount: false, lenses: false, neck: true } => {
             Some(if is_told { NECK } else { NECK_UNTOLD })
         }
@@ -21,6 +23,9 @@ pub fn wide_because(unmeasured: Unmeasured, is_told: bool, turned: Turned) -> Op
 
 const TURNED: &str = "The ± is wide because the eyes are not as warm as when they were calibrated: it holds how far eyes \
      usually turn meanwhile. The clock in the top line says how long they have been on.";
+const TURNED_AND_NECK: &str = "The ± is wide because the eyes are not as warm as when they were calibrated (the clock in the top \
+     line), and nobody measured where the head looks straight ahead (the hands, in step 6, Hand-eye): it holds how far \
+     both usually are off.";
 const MOUNT: &str = "The ± is wide because nobody measured how the eyes sit in the head: it holds how far that usually \
      is off. Calibrate the mount in step 2, Mount.";
 const NECK: &str = "The ± is wide because nobody measured where the head looks straight ahead, which no board tells: it \
@@ -63,6 +68,12 @@ mod tests {
         };
         assert_eq!(said(0.001), None);
         assert!(said(0.006).is_some_and(|said| said.contains("not as warm as when they were calibrated")));
+        let neck = Unmeasured { neck: true, ..Unmeasured::default() };
+        let both = wide_because(neck, true, Turned { apart_rad: 0.006, together_rad: 0.006 });
+        assert!(
+            both.is_some_and(|said| said.contains("not as warm") && said.contains("step 6, Hand-eye")),
+            "{both:?}"
+        );
     }
 
     #[test]

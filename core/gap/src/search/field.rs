@@ -13,9 +13,11 @@ use std::sync::Arc;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use plumbline_effects::Kind;
+use plumbline_model::JobContext;
 
 use super::library::Block;
 use super::linear::{Sums, gram_of};
+use crate::error::GapError;
 use crate::statistics::ln_not_negative;
 
 /// Dirt is at most this share of a usual size.
@@ -87,9 +89,17 @@ impl Variant {
 
 impl Framed {
     /// Of sums, when cells are off by this variance; `present` are values (usual sizes) that the
-    /// residual was taken at, by column: they are put back.
-    pub fn of(sums: &Sums, cell_variance: f64, present: &DVector<f64>) -> Option<Self> {
-        let (gram, log_det) = sums.gram(cell_variance);
+    /// residual was taken at, by column: they are put back. `None` where frames cannot be told.
+    ///
+    /// # Errors
+    /// Cancelled.
+    pub fn of(
+        sums: &Sums,
+        cell_variance: f64,
+        present: &DVector<f64>,
+        context: &dyn JobContext,
+    ) -> Result<Option<Self>, GapError> {
+        let (gram, log_det) = sums.gram(cell_variance, context)?;
         let last = gram.ncols() - 1;
         let g = sums.gauge;
         let k = last - g;
@@ -101,7 +111,7 @@ impl Framed {
         b += back;
         let priors = DVector::from_iterator(g, sums.nuisances.iter().map(|nuisance| nuisance.prior_sd()));
         let gauge = gram.view((0, 0), (g, g)) + DMatrix::from_diagonal(&priors.map(|sd| 1.0 / (sd * sd)));
-        let gauge = Cholesky::new(gauge)?;
+        let Some(gauge) = Cholesky::new(gauge) else { return Ok(None) };
         let mixed = gram.view((0, g), (g, k)).clone_owned();
         let solved = gauge.solve(&mixed);
         let turned = gauge.solve(&b.rows(0, g).clone_owned());
@@ -110,14 +120,14 @@ impl Framed {
         let b_effects = own - mixed.tr_mul(&turned).column(0);
         square -= b.rows(0, g).column(0).dot(&turned.column(0));
         let logs = log_det + gauge.ln_determinant() + 2.0 * priors.map(f64::ln).sum();
-        Some(Self {
+        Ok(Some(Self {
             a: 0.5 * (&a + a.transpose()),
             b: b_effects,
             square,
             logs,
             gauge: g as f64,
             total: sums.total,
-        })
+        }))
     }
 
     /// Root mean square of what a usual size of each column does to the rows, in floors.
@@ -144,8 +154,17 @@ impl Framed {
         Some(self.bare(variant) + 0.5 * (b.dot(&inner.solve(&b)) - inner.ln_determinant()))
     }
 
-    /// With the noise of a variant and so much of every column (standard deviation, usual sizes) taken in.
-    pub fn dirtied(&self, variant: Variant, narrow: &DVector<f64>) -> Option<Dirtied> {
+    /// With the noise of a variant and so much of every column (standard deviation, usual sizes) taken in. `None` where
+    /// numbers are beyond what can be worked out.
+    ///
+    /// # Errors
+    /// Cancelled.
+    pub fn dirtied(
+        &self,
+        variant: Variant,
+        narrow: &DVector<f64>,
+        context: &dyn JobContext,
+    ) -> Result<Option<Dirtied>, GapError> {
         let k = self.a.ncols();
         let noise = 1.0 / (variant.noise * variant.noise);
         let small: Vec<usize> = (0..k).filter(|&c| narrow[c] > 0.0).collect();
@@ -156,17 +175,18 @@ impl Framed {
             let mut inner =
                 DMatrix::from_fn(small.len(), small.len(), |r, c| half[(r, small[c])] * narrow[small[c]]);
             inner.fill_diagonal_add(1.0);
-            let inner = Cholesky::new(inner)?;
+            let Some(inner) = Cholesky::new(inner) else { return Ok(None) };
+            context.checkpoint()?;
             let narrow_b = DVector::from_fn(small.len(), |r, _| b[small[r]] * narrow[small[r]]);
             let lower = inner.l();
-            let right = lower.solve_lower_triangular(&half)?;
-            let turned = lower.solve_lower_triangular(&narrow_b)?;
-            a -= gram_of(&right);
+            let Some(right) = lower.solve_lower_triangular(&half) else { return Ok(None) };
+            let Some(turned) = lower.solve_lower_triangular(&narrow_b) else { return Ok(None) };
+            a -= gram_of(&right, context)?;
             b -= right.tr_mul(&turned);
             log_evidence += 0.5 * (turned.norm_squared() - inner.ln_determinant());
             square -= turned.norm_squared();
         }
-        Some(Dirtied { a, b, log_evidence, square })
+        Ok(Some(Dirtied { a, b, log_evidence, square }))
     }
 }
 
@@ -399,6 +419,8 @@ pub(super) fn log_sum(values: impl Iterator<Item = f64> + Clone) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use plumbline_model::Unattended;
+
     use super::*;
 
     fn block(start: usize, is_one_sided: bool) -> Block {
@@ -451,7 +473,8 @@ mod tests {
         let variant = Variant { noise: 0.7, cell: 0.0, dirt: 0.0, size: 3.0, most: 1.0, log_prior: 0.0 };
         for sds in [[0.0; 3], [0.3, 0.0, 0.8], [0.1, 0.2, 0.4]] {
             let sds = DVector::from_column_slice(&sds);
-            let taken = framed.dirtied(variant, &sds).expect("can be taken in").log_evidence;
+            let taken = framed.dirtied(variant, &sds, &Unattended).expect("not cancelled");
+            let taken = taken.expect("can be taken in").log_evidence;
             let alone = framed.log_evidence(variant, &sds).expect("has evidence");
             assert!((taken - alone).abs() < 1e-9, "{sds}: {taken} {alone}");
         }

@@ -171,7 +171,7 @@ impl Finish<'_> {
         let linear = Linear::of(self.measurements, self.floor, assumed, &effects, context)?;
         let variant = self.look.fields.get(self.look.likely(self.explored)).map(|field| field.variant);
         let (noise, cell, dirt) = variant.map_or((1.0, 0.0, 0.0), |v| (v.noise, v.cell, v.dirt));
-        let (gram, _) = linear.sums(weights).gram(cell * cell);
+        let (gram, _) = linear.sums(weights, context)?.gram(cell * cell, context)?;
         let own = gram.ncols() - 1;
         let mut normal = gram.view((0, 0), (own, own)) / (noise * noise);
         for k in 0..own {

@@ -4,11 +4,13 @@
 use nalgebra::DMatrix;
 use plumbline_effects::Kind;
 use plumbline_effects::measurements::{Measurements, What};
+use plumbline_model::JobContext;
 
 use super::library::{Block, Library};
 use super::linear::Linear;
 use super::steps::steps;
 use crate::covariates::Covariates;
+use crate::error::GapError;
 
 /// Smooth functions of each covariate.
 const FUNCTIONS: usize = 6;
@@ -28,6 +30,21 @@ pub(super) struct Rival {
     pub softens: Option<String>,
 }
 
+/// All rivals with their columns.
+pub(super) struct Rivals {
+    pub rivals: Vec<Rival>,
+    pub blocks: Vec<Block>,
+    /// One line as in the linearization.
+    pub columns: DMatrix<f64>,
+}
+
+/// One that goes with another joint, or in a step, and how many of its sort the joint has.
+struct Other {
+    rival: Rival,
+    columns: Vec<Vec<f64>>,
+    among: usize,
+}
+
 /// How much a joint gives way as it warms goes smoothly from cold to warm: what it always gives way, and these.
 const FUNCTIONS_OF_WARMTH: usize = 3;
 
@@ -44,12 +61,16 @@ enum Moved {
 
 /// Rivals with their columns, one line as in `linear`; their blocks are numbered from the end of
 /// the library's on and share one name: only one at a time.
+///
+/// # Errors
+/// Cancelled.
 pub(super) fn rivals(
     measurements: &Measurements,
     covariates: &Covariates,
     library: &Library,
     linear: &Linear,
-) -> (Vec<Rival>, Vec<Block>, DMatrix<f64>) {
+    context: &dyn JobContext,
+) -> Result<Rivals, GapError> {
     let mut rivals = vec![];
     let mut columns: Vec<Vec<Vec<f64>>> = vec![];
     let mut add =
@@ -73,6 +94,7 @@ pub(super) fn rivals(
         if effect.kind != Kind::JointZero && !neck || effect.is_of_every_site() {
             continue;
         }
+        context.checkpoint()?;
         let title = effect.title.split(':').next().unwrap_or_default().to_owned();
         let moved = Moved::Column(linear.gauge + block.start);
         let of = format!("turn of {title}");
@@ -120,10 +142,10 @@ pub(super) fn rivals(
     // all steps, of one joint together as much as one rival.
     let each = UNKNOWN / rivals.len().max(1) as f64;
     let mut shares = vec![each; rivals.len()];
-    for (rival, own, among) in of_other_joints(measurements, covariates, library, linear) {
-        rivals.push(rival);
-        columns.push(own);
-        shares.push(each / among as f64);
+    for other in of_other_joints(measurements, covariates, library, linear, context)? {
+        rivals.push(other.rival);
+        columns.push(other.columns);
+        shares.push(each / other.among as f64);
     }
     let mut start = library.columns;
     let blocks = columns
@@ -148,7 +170,7 @@ pub(super) fn rivals(
     let lines = linear.lines.nrows();
     let columns = columns.concat();
     let matrix = DMatrix::from_fn(lines, columns.len(), |line, column| columns[column][line]);
-    (rivals, blocks, matrix)
+    Ok(Rivals { rivals, blocks, columns: matrix })
 }
 
 /// Of an arm that is measured from outside: the turn of each joint by how far it came (a joint that remembers), by the
@@ -159,9 +181,10 @@ fn of_other_joints(
     covariates: &Covariates,
     library: &Library,
     linear: &Linear,
-) -> Vec<(Rival, Vec<Vec<f64>>, usize)> {
+    context: &dyn JobContext,
+) -> Result<Vec<Other>, GapError> {
     if !measurements.has(What::Pose) && !measurements.has(What::OrientedPose) {
-        return vec![];
+        return Ok(vec![]);
     }
     let arm = measurements.apparatuses.iter().find_map(|apparatus| apparatus.arm.as_ref());
     let titles: Vec<&str> =
@@ -176,14 +199,15 @@ fn of_other_joints(
         let Some(own) = titles.iter().position(|known| *known == title) else { continue };
         let of_turn = |on: String| Rival { of: format!("turn of {title}"), on, softens: None };
         let base = base(measurements, linear, &Moved::Column(linear.gauge + block.start));
-        let (columns, among) = steps(measurements, linear, &base, own);
+        let (columns, among) = steps(measurements, linear, &base, own, context)?;
         for column in columns {
             let rival = of_turn(format!("angle of {title}, in a step"));
-            found.push((rival, vec![column.into_iter().map(|value| LARGE * value).collect()], among));
+            let columns = vec![column.into_iter().map(|value| LARGE * value).collect()];
+            found.push(Other { rival, columns, among });
         }
         let mut add = |on: String, value: &dyn Fn(usize) -> Option<f64>, count: usize, among: usize| {
             if let Some(columns) = functions(linear, covariates, &base, value, None, count) {
-                found.push((of_turn(on), columns, among));
+                found.push(Other { rival: of_turn(on), columns, among });
             }
         };
         let way = |row: usize| came[row].as_ref().and_then(|turned| turned.get(own)).copied();
@@ -193,7 +217,7 @@ fn of_other_joints(
             add(format!("angle of {name}"), &angle, FUNCTIONS_OF_ANOTHER, titles.len() - 1);
         }
     }
-    found
+    Ok(found)
 }
 
 /// How far each joint turned since the row before it in time, by rows, rad; `None` where that row is not there.

@@ -54,6 +54,9 @@ const EVERY_SITE: f64 = 0.05;
 /// encoders are read in one pass. What lags behind its command by the same amount in every pose, and the finger
 /// does not, is the play of an encoder's drive.
 const ONE_LOGGED_EARLY: f64 = 0.002;
+/// Play that gravity closes: how probable it is that the load turns over about where the description has it. Its other
+/// shapes are for robots whose rows say so.
+const LOAD_AS_DESCRIBED: f64 = 0.85;
 
 /// Beside all of them it is usual: a joint that carries more settles later, so more of its way was left.
 const ONE_LATER_THAN_ALL: f64 = 0.3;
@@ -159,7 +162,13 @@ impl Library {
                 (_, true) => ONE_LOGGED_EARLY,
                 (false, false) => 1.0,
             };
-            block.log_prior = (many * odds / shapes[block.name] as f64).ln();
+            let others = shapes[block.name] - 1;
+            let share = match (effect.kind, effect.shape) {
+                (Kind::GravityBacklash, None) if others > 0 => LOAD_AS_DESCRIBED,
+                (Kind::GravityBacklash, Some(_)) => (1.0 - LOAD_AS_DESCRIBED) / others.max(1) as f64,
+                _ => 1.0 / (others + 1) as f64,
+            };
+            block.log_prior = (many * odds * share).ln();
         }
         Self { effects, blocks, names, columns: start }
     }

@@ -13,6 +13,8 @@ use crate::floor::Floor;
 
 /// Rows between two looks at whether to stop.
 const CHUNK: usize = 256;
+/// Columns of a product between two looks at whether to stop.
+const PANEL: usize = 64;
 
 /// Whitened by the floor: one line per coordinate of every row that is predicted.
 pub(super) struct Linear {
@@ -107,7 +109,10 @@ impl Linear {
     }
 
     /// Sums over rows, each with its weight.
-    pub fn sums(&self, weights: &[f64]) -> Sums {
+    ///
+    /// # Errors
+    /// Cancelled.
+    pub fn sums(&self, weights: &[f64], context: &dyn JobContext) -> Result<Sums, GapError> {
         let mut scaled = self.lines.clone();
         let mut counts = vec![0.0; self.cells];
         let mut total = 0.0;
@@ -117,7 +122,7 @@ impl Linear {
             total += weight;
             scaled.row_mut(line).scale_mut(weight.sqrt());
         }
-        let gram = gram_of(&scaled);
+        let gram = gram_of(&scaled, context)?;
         let repeated = counts.iter().any(|count| *count > 1.0);
         let means = if repeated {
             let mut means = DMatrix::zeros(self.cells, self.lines.ncols());
@@ -130,14 +135,31 @@ impl Linear {
         } else {
             None
         };
-        Sums { gauge: self.gauge, nuisances: self.nuisances.clone(), gram, means, counts, total }
+        Ok(Sums { gauge: self.gauge, nuisances: self.nuisances.clone(), gram, means, counts, total })
     }
 }
 
 /// MᵀM. By a transposed copy, since the product of whole matrices goes by blocks that fit the cache, and a product
-/// of columns, dot by dot, does not.
-pub(super) fn gram_of(matrix: &DMatrix<f64>) -> DMatrix<f64> {
-    matrix.transpose() * matrix
+/// of columns, dot by dot, does not. In panels of what lies on and below the diagonal.
+///
+/// # Errors
+/// Cancelled.
+pub(super) fn gram_of(matrix: &DMatrix<f64>, context: &dyn JobContext) -> Result<DMatrix<f64>, GapError> {
+    let transposed = matrix.transpose();
+    let columns = matrix.ncols();
+    let mut gram = DMatrix::zeros(columns, columns);
+    for from in (0..columns).step_by(PANEL) {
+        context.checkpoint()?;
+        let (width, below) = (PANEL.min(columns - from), columns - from);
+        gram.view_mut((from, from), (below, width)).gemm(
+            1.0,
+            &transposed.rows(from, below),
+            &matrix.columns(from, width),
+            0.0,
+        );
+    }
+    gram.fill_upper_triangle_with_lower_triangle();
+    Ok(gram)
 }
 
 /// What evidence needs of the rows; its size does not depend on their number, cells apart.
@@ -157,7 +179,14 @@ pub(super) struct Sums {
 impl Sums {
     /// Gram matrix of all columns and the residual when each cell is off by an own amount of this
     /// variance (in squares of the floor), and the logarithm of the determinant of the covariance.
-    pub fn gram(&self, cell_variance: f64) -> (DMatrix<f64>, f64) {
+    ///
+    /// # Errors
+    /// Cancelled.
+    pub fn gram(
+        &self,
+        cell_variance: f64,
+        context: &dyn JobContext,
+    ) -> Result<(DMatrix<f64>, f64), GapError> {
         let log_det: f64 = self.counts.iter().map(|count| (1.0 + cell_variance * count).ln()).sum();
         let shrink = |count: f64| cell_variance / (1.0 + cell_variance * count);
         let gram = match &self.means {
@@ -168,10 +197,10 @@ impl Sums {
                 for (cell, count) in self.counts.iter().enumerate() {
                     scaled.row_mut(cell).scale_mut(shrink(*count).sqrt());
                 }
-                &self.gram - gram_of(&scaled)
+                &self.gram - gram_of(&scaled, context)?
             }
         };
-        (gram, log_det)
+        Ok((gram, log_det))
     }
 }
 

@@ -10,7 +10,7 @@ use plumbline_model::JobContext;
 
 use super::explore::{Explored, Space};
 use super::field::{Dirtied, Field, Framed, Variant};
-use super::free::{Rival, rivals};
+use super::free::{Rival, Rivals, rivals};
 use super::library::{Block, Library};
 use super::linear::Linear;
 use super::many::Ground;
@@ -34,6 +34,8 @@ const LEAST_STEP: f64 = 3.0;
 const KEPT: usize = 2;
 /// No fingertip is a point: its pad is round by so much or less, m.
 const PAD_SD_M: f64 = 0.3e-3;
+/// Shapes of one effect whose columns have this cosine do the same.
+const ALIKE: f64 = 0.99;
 /// Divides log odds: see the README's section on calibration.
 pub(super) const TEMPERATURE: f64 = 2.0;
 
@@ -61,6 +63,36 @@ pub(super) struct Look {
     pub ground: Ground,
 }
 
+/// Blocks that are looked through, without the further shapes of play that gravity closes where the load turns over nowhere
+/// (or in the same rows): there they do what the first one does, which is then as probable as all of them.
+fn without_doubles(
+    blocks: &mut [Block],
+    allowed: Vec<usize>,
+    library: &Library,
+    plain: &Framed,
+) -> Vec<usize> {
+    let is_play = |block: usize| blocks[block].kind == Some(Kind::GravityBacklash);
+    let first = |block: usize| {
+        let same = |other: &usize| blocks[*other].name == blocks[block].name;
+        (0..library.effects.len()).find(same).unwrap_or(block)
+    };
+    let is_double = |block: usize, of: usize| {
+        let [own, other] = [block, of].map(|block| blocks[block].start);
+        plain.a[(own, other)].abs() > ALIKE * (plain.a[(own, own)] * plain.a[(other, other)]).sqrt()
+    };
+    let (mut kept, mut doubles) = (vec![], vec![]);
+    for block in allowed {
+        let of = first(block);
+        let double = block < library.effects.len() && is_play(block) && block != of && is_double(block, of);
+        if double { doubles.push((block, of)) } else { kept.push(block) }
+    }
+    for (block, of) in doubles {
+        let [own, all] = [block, of].map(|block| blocks[block].log_prior.exp());
+        blocks[of].log_prior = (own + all).ln();
+    }
+    kept
+}
+
 impl Look {
     /// At a model.
     ///
@@ -76,12 +108,13 @@ impl Look {
         context: &dyn JobContext,
     ) -> Result<Self, GapError> {
         let mut linear = Linear::of(measurements, floor, assumed, &library.effects, context)?;
-        let (rivals, more, columns) = rivals(measurements, covariates, library, &linear);
+        let Rivals { rivals, blocks: more, columns } =
+            rivals(measurements, covariates, library, &linear, context)?;
         linear.append(&columns);
         let mut blocks = library.blocks.clone();
         blocks.extend(more);
         context.checkpoint()?;
-        let sums = linear.sums(weights);
+        let sums = linear.sums(weights, context)?;
         let count = linear.effects();
         let mut present = DVector::zeros(count);
         for one in &assumed.effects {
@@ -95,7 +128,7 @@ impl Look {
         }
         let nothing =
             || GapError::TooFew { rows: measurements.rows.len(), needed: measurements.rows.len() + 10 };
-        let plain = Framed::of(&sums, 0.0, &present).ok_or_else(nothing)?;
+        let plain = Framed::of(&sums, 0.0, &present, context)?.ok_or_else(nothing)?;
         let sizes = plain.sizes();
         let allowed: Vec<usize> = (0..blocks.len())
             .filter(|&block| {
@@ -105,6 +138,7 @@ impl Look {
                 present || LARGEST_VALUE * size >= SMALLEST && seen >= SEEN_SIGMAS
             })
             .collect();
+        let allowed = without_doubles(&mut blocks, allowed, library, &plain);
         // Only what is looked through takes part from here on.
         let mut packed = blocks.clone();
         let mut kept: Vec<usize> = vec![];
@@ -143,11 +177,14 @@ impl Look {
             if !shared.as_ref().is_some_and(|(known, _)| like(known)) {
                 context.checkpoint()?;
                 if !framed.as_ref().is_some_and(|(cell, _)| *cell == variant.cell) {
-                    framed = Framed::of(&ground.sums, variant.cell * variant.cell, &ground.present)
+                    framed = Framed::of(&ground.sums, variant.cell * variant.cell, &ground.present, context)?
                         .map(|one| (variant.cell, one));
                 }
                 let narrow = variant.narrow(&ground.sizes, &ground.dirty, &ground.always);
-                let dirtied = framed.as_ref().and_then(|(_, framed)| framed.dirtied(variant, &narrow));
+                let dirtied = match &framed {
+                    Some((_, framed)) => framed.dirtied(variant, &narrow, context)?,
+                    None => None,
+                };
                 shared = dirtied.map(|dirtied| (variant, Arc::new(dirtied)));
             }
             if let Some((_, shared)) = &shared {

@@ -6,6 +6,7 @@
 //! sure that stand out of all the others.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
+use plumbline_model::JobContext;
 use statrs::distribution::{ChiSquared, ContinuousCDF, Discrete, DiscreteCDF, Poisson};
 
 use super::explore::Explored;
@@ -14,6 +15,7 @@ use super::linear::Sums;
 use super::look::TEMPERATURE;
 use super::naming::Evidence;
 use super::variants::variants;
+use crate::error::GapError;
 use crate::finding::FloorSource;
 
 /// How large everything is, shares of usual sizes, each as probable as the others.
@@ -63,16 +65,25 @@ struct Way {
 
 impl Many {
     /// Of rows whose noise is told by `source` and whose gap is so large (floors). `None` where nothing is looked through.
-    pub fn of(ground: &Ground, source: FloorSource, gap: f64) -> Option<Self> {
+    ///
+    /// # Errors
+    /// Cancelled.
+    pub fn of(
+        ground: &Ground,
+        source: FloorSource,
+        gap: f64,
+        context: &dyn JobContext,
+    ) -> Result<Option<Self>, GapError> {
         let mut ways: Vec<Way> = vec![];
         let mut framed: Option<(f64, Framed)> = None;
         for variant in variants(source, gap) {
             if framed.as_ref().is_none_or(|(cell, _)| *cell != variant.cell) {
-                framed = Framed::of(&ground.sums, variant.cell * variant.cell, &ground.present)
+                framed = Framed::of(&ground.sums, variant.cell * variant.cell, &ground.present, context)?
                     .map(|one| (variant.cell, one));
             }
             let Some((_, framed)) = &framed else { continue };
             for share in SHARES {
+                context.checkpoint()?;
                 let sds = ground.sds(share, variant.size, variant.most);
                 let Some(own) = framed.log_evidence(variant, &sds) else { continue };
                 let log = own + variant.log_prior - (SHARES.len() as f64).ln();
@@ -80,10 +91,10 @@ impl Many {
             }
         }
         let log_evidence = log_sum(ways.iter().map(|way| way.log));
-        let best = ways.iter().max_by(|a, b| a.log.total_cmp(&b.log))?;
-        let framed = Framed::of(&ground.sums, best.cell * best.cell, &ground.present)?;
-        let (means, covariance) = best.values(&framed)?;
-        Some(Self { log_evidence, means, covariance })
+        let Some(best) = ways.iter().max_by(|a, b| a.log.total_cmp(&b.log)) else { return Ok(None) };
+        let framed = Framed::of(&ground.sums, best.cell * best.cell, &ground.present, context)?;
+        let values = framed.and_then(|framed| best.values(&framed));
+        Ok(values.map(|(means, covariance)| Self { log_evidence, means, covariance }))
     }
 
     /// How probable it is beside the sets that were looked through.

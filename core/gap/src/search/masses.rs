@@ -47,7 +47,7 @@ pub(super) fn doubt(
         return Ok(None);
     }
     linear.append(&columns);
-    let (gram, _) = linear.sums(weights).gram(cell * cell);
+    let (gram, _) = linear.sums(weights, context)?.gram(cell * cell, context)?;
     let gram = gram / (noise * noise);
     let own = linear.gauge + count;
     let mut normal = gram.view((0, 0), (own, own)).clone_owned();

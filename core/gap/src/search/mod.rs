@@ -195,7 +195,7 @@ pub(crate) fn search(
     };
     context.checkpoint()?;
     let many = if explored.models.first().is_some_and(|model| model.set.len() >= many::LEAST_FEW) {
-        many::Many::of(&look.ground, floor.source, look.gap())
+        many::Many::of(&look.ground, floor.source, look.gap(), context)?
     } else {
         None
     };

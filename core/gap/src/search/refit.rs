@@ -103,7 +103,7 @@ pub(super) fn refit(
         let stands: Vec<f64> = linear.nuisances.iter().map(|nuisance| nuisance.value(&assumed)).collect();
         let mut step = DVector::zeros(columns);
         for _ in 0..4 {
-            let Some(next) = solve(&linear, &own, &stands, &values, &mut priors) else { break };
+            let Some(next) = solve(&linear, &own, &stands, &values, &mut priors, context)? else { break };
             step = next;
             let left = &now - linear.lines.columns(0, columns) * &step;
             own = weights(&linear.misses(rows, &left), &sets);
@@ -155,9 +155,9 @@ fn solve(
     stands: &[f64],
     values: &DVector<f64>,
     priors: &mut Priors,
-) -> Option<DVector<f64>> {
-    let sums = linear.sums(weights);
-    let (gram, _) = sums.gram(0.05);
+    context: &dyn JobContext,
+) -> Result<Option<DVector<f64>>, GapError> {
+    let (gram, _) = linear.sums(weights, context)?.gram(0.05, context)?;
     let columns = gram.ncols() - 1;
     let mut normal = gram.view((0, 0), (columns, columns)).clone_owned();
     let mut right =
@@ -176,7 +176,7 @@ fn solve(
             own[(gauge + k, gauge + k)] += sd.powi(-2);
             pull[gauge + k] -= values[k] * sd.powi(-2);
         }
-        let cholesky = Cholesky::new(own)?;
+        let Some(cholesky) = Cholesky::new(own) else { return Ok(None) };
         let next = cholesky.solve(&pull);
         if !priors.families.is_empty() {
             let inverse = cholesky.inverse();
@@ -184,7 +184,7 @@ fn solve(
         }
         step = Some(next);
     }
-    step
+    Ok(step)
 }
 
 /// Moves frames and values by a step of the columns of `linear`.
@@ -229,9 +229,8 @@ pub(super) fn frames(
         let mut step = DVector::zeros(linear.gauge);
         let stands: Vec<f64> = linear.nuisances.iter().map(|nuisance| nuisance.value(&assumed)).collect();
         for _ in 0..4 {
-            let Some(next) = solve(&linear, &own, &stands, &DVector::zeros(0), &mut Priors::of(&[])) else {
-                break;
-            };
+            let (none, mut priors) = (DVector::zeros(0), Priors::of(&[]));
+            let Some(next) = solve(&linear, &own, &stands, &none, &mut priors, context)? else { break };
             step = next;
             let left = &now - linear.lines.columns(0, linear.gauge) * &step;
             own = weights(&linear.misses(rows, &left), &sets);

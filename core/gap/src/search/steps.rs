@@ -2,8 +2,10 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 use plumbline_effects::measurements::Measurements;
+use plumbline_model::JobContext;
 
 use super::linear::Linear;
+use crate::error::GapError;
 
 /// Of all angles between two poses so many of the likeliest are looked at. The others are not less probable for it
 /// beforehand: each has its share of what a jump somewhere has.
@@ -20,18 +22,22 @@ const RIDGE: f64 = 1e-9;
 /// Columns of one where a joint is beyond the angle, times what its turn does (`base`, one per line), and how many angles
 /// there are. Which are likeliest is seen beside frames and all that goes smoothly with the joint's own angle: its zero, its
 /// ratio, an encoder off its axis.
+///
+/// # Errors
+/// Cancelled.
 pub(super) fn steps(
     measurements: &Measurements,
     linear: &Linear,
     base: &[f64],
     joint: usize,
-) -> (Vec<Vec<f64>>, usize) {
+    context: &dyn JobContext,
+) -> Result<(Vec<Vec<f64>>, usize), GapError> {
     let angle = |row: usize| measurements.rows[row].angles_rad().get(joint).copied();
     let mut known: Vec<f64> = (0..measurements.rows.len()).filter_map(angle).collect();
     known.sort_by(f64::total_cmp);
     known.dedup_by(|a, b| (*a - *b).abs() < SAME_ANGLE);
     if known.len() < FEWEST {
-        return (vec![], 0);
+        return Ok((vec![], 0));
     }
     let edges: Vec<f64> = known[FEWEST_BESIDE - 1..=known.len() - FEWEST_BESIDE]
         .windows(2)
@@ -42,20 +48,18 @@ pub(super) fn steps(
         let is_beyond = |line: usize| of_line(line).is_some_and(|angle| angle > edge);
         (0..base.len()).map(|line| if is_beyond(line) { base[line] } else { 0.0 }).collect()
     };
-    let Some(smooth) = Smooth::of(linear, base, &of_line) else { return (vec![], 0) };
+    let Some(smooth) = Smooth::of(linear, base, &of_line) else { return Ok((vec![], 0)) };
     let left = smooth.left_of(linear.lines.column(linear.lines.ncols() - 1).clone_owned());
-    let mut tried: Vec<(f64, Vec<f64>)> = edges
-        .iter()
-        .map(|&edge| {
-            let own = column(edge);
-            let beside = smooth.left_of(DVector::from_column_slice(&own));
-            let square = beside.norm_squared();
-            (if square > 0.0 { beside.dot(&left).powi(2) / square } else { 0.0 }, own)
-        })
-        .collect();
+    let mut tried: Vec<(f64, f64)> = Vec::with_capacity(edges.len());
+    for &edge in &edges {
+        context.checkpoint()?;
+        let beside = smooth.left_of(DVector::from_column_slice(&column(edge)));
+        let square = beside.norm_squared();
+        tried.push((if square > 0.0 { beside.dot(&left).powi(2) / square } else { 0.0 }, edge));
+    }
     tried.sort_by(|a, b| b.0.total_cmp(&a.0));
     tried.truncate(LOOKED_AT);
-    (tried.into_iter().map(|(_, own)| own).collect(), edges.len())
+    Ok((tried.into_iter().map(|(_, edge)| column(edge)).collect(), edges.len()))
 }
 
 /// What frames do and what goes smoothly with the angle of a joint.
@@ -146,7 +150,7 @@ mod tests {
         let zero = Effect::find("joint-zero", "r_elbow_y", None, arm, None).expect("of the library");
         let linear = Linear::of(made, &floor, &Assumed::nominal(made), &[zero], &Unattended).expect("linear");
         let base: Vec<f64> = linear.lines.column(linear.gauge).iter().copied().collect();
-        let (columns, among) = steps(made, &linear, &base, ELBOW);
+        let (columns, among) = steps(made, &linear, &base, ELBOW, &Unattended).expect("not cancelled");
         let angle = |line: usize| made.rows[linear.row[line]].angles_rad().get(ELBOW).copied();
         let smooth = Smooth::of(&linear, &base, &angle).expect("solvable");
         let left = smooth.left_of(linear.lines.column(linear.lines.ncols() - 1).clone_owned());

@@ -3,6 +3,7 @@
 //! Data that are not at hand leave their figures out, with the reason.
 
 mod correction;
+mod gap;
 mod looking;
 mod robot;
 
@@ -119,6 +120,9 @@ pub fn bench(context: &dyn JobContext) -> Result<BenchReport, OfflineError> {
     context.checkpoint()?;
     context.report(0.85, "correction models");
     figures.extend(correction::figures());
+    context.checkpoint()?;
+    context.report(0.88, "the search for the gap");
+    figures.extend(gap::figures());
     context.checkpoint()?;
     context.report(0.9, "kinematics, servo bus, the twin's eyes and what is seen with them");
     figures.extend(robot::figures());

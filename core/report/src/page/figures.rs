@@ -44,7 +44,9 @@ fn gap(drawing: &mut Drawing, area: Area, finding: &Finding) {
     if finding.verdict != Verdict::NoGap {
         all.push(bar("after", shown.after, ink::AFTER));
     }
-    all.push(bar("noise floor", shown.floor, ink::FLOOR));
+    let is_known = finding.comparison.is_noise_known();
+    let floor = if is_known { "noise floor" } else { "the best model" };
+    all.push(bar(floor, shown.floor, ink::FLOOR));
     let y = bars::draw(drawing, area.below(HEADING), &all, 54.0, 17.0, Some(shown.floor));
     let mut lines = vec![];
     match (finding.verdict, shown.closure) {
@@ -56,6 +58,10 @@ fn gap(drawing: &mut Drawing, area: Area, finding: &Finding) {
         }
         (Verdict::NoGap, _) => lines
             .push(format!("Noise alone leaves as much or more ({}).", p_value(finding.comparison.p_value))),
+        (_, Some(_)) if !is_known => {
+            lines
+                .push("Nothing tells the noise: how much of the rest can be closed is not known.".to_owned());
+        }
         (_, Some(closure)) => {
             let range = shown
                 .closure_range

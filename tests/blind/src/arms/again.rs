@@ -82,8 +82,8 @@ impl Arm {
         self.sessions += 1;
         let mut bases = self.setup.cells.clone();
         bases.shuffle(&mut self.random);
-        bases.truncate(places);
-        let cells: Vec<Cell> = bases.iter().flat_map(|base| self.cells(ask, base)).collect();
+        let cells: Vec<Cell> =
+            bases.iter().cycle().take(places).flat_map(|base| self.cells(ask, base)).collect();
         let visits = self.visits(ask, cells.len());
         let label = format!("session {} ", self.sessions);
         let mut setup = Setup { cells, visits, label, is_repeated: true, ..self.setup.clone() };
@@ -95,6 +95,11 @@ impl Arm {
     /// What lies beside the tables of each of its sessions: name and text.
     pub fn files(&self) -> Vec<(String, String)> {
         cases::files(&self.setup)
+    }
+
+    /// How many joints it has.
+    pub fn joints(&self) -> usize {
+        self.setup.robot.len()
     }
 
     /// Names of joints that slide.

@@ -186,9 +186,8 @@ fn mount(view: &View) -> Said {
 fn in_short(finding: &Finding, addable: &[usize]) -> String {
     let named = addable.iter().filter_map(|index| finding.effects.get(*index));
     let names: Vec<String> = named.map(crate::operator::words::effect::short).collect();
-    let closed = finding.shown.closure.map_or_else(String::new, |closure| {
-        format!(" On touches that were held out it closes {} of the gap.", format::percent(closure))
-    });
+    let closed = crate::operator::words::gap::on_held_out(finding, "On touches that were held out");
+    let closed = closed.map_or_else(String::new, |closed| format!(" {closed}"));
     // What only closes a part of the gap is no name for it.
     let found = match finding.verdict {
         Verdict::NotInLibrary => "Not named, but closed in part by",

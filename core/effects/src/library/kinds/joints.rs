@@ -4,6 +4,11 @@ use super::{Act, Effect, Entry, Is, Known, Shape, Site, TILT, Turning, parameter
 
 /// A tooth has two flanks: gravity has chosen one when it is clearly larger than this, N m.
 const SEATING_TORQUE_NM: f64 = 0.02;
+/// The same of gears that rub.
+const RUBBING_TORQUE_NM: f64 = 0.1;
+/// Masses are off by about a seventh, each by itself: as if so much of what a joint bears were at the hand, or were
+/// missing there.
+const SHARE_AT_HAND: f64 = 0.1;
 
 pub(super) static JOINT_ZERO: Entry = Entry {
     about: "zero position off",
@@ -82,9 +87,25 @@ pub(super) static GRAVITY_BACKLASH: Entry = Entry {
     parameters: &[parameter("width_rad", 0.007)],
     sliding: &[],
     site: Site::Joint,
-    shape: Shape::None,
+    // Masses are never quite those of the description, so the load turns over in other postures than it says; and gears
+    // that rub stay between their flanks until the load is larger than what rubs.
+    shape: Shape::OneOf(&[
+        "load as described",
+        "heavier toward the hand",
+        "lighter toward the hand",
+        "gears that rub",
+    ]),
     shown: |rows| rows.arm,
-    act: Act::Turn(|at| 0.5 * at.value() * (at.torque_nm() / SEATING_TORQUE_NM).tanh()),
+    act: Act::Turn(|at| {
+        let (heavier, seating_nm) = [
+            (0.0, SEATING_TORQUE_NM),
+            (SHARE_AT_HAND, SEATING_TORQUE_NM),
+            (-SHARE_AT_HAND, SEATING_TORQUE_NM),
+            (0.0, RUBBING_TORQUE_NM),
+        ][at.effect.choice().min(3)];
+        let load_nm = at.torque_nm() + heavier * at.torque_of_weight_at_hand_nm();
+        0.5 * at.value() * (load_nm / seating_nm).tanh()
+    }),
     reported: Effect::size,
     is: &[Is::Planned, Is::OneSided, Is::SeenBehindGear],
 };

@@ -45,8 +45,10 @@ impl Bench {
         let linear =
             Linear::of(&nominal, &floor(), &Assumed::nominal(&nominal), &library.effects, &Unattended)
                 .expect("never cancelled");
-        let sums = linear.sums(&vec![1.0; nominal.rows.len()]);
-        let framed = Framed::of(&sums, 0.0, &DVector::zeros(library.columns)).expect("frames can be fitted");
+        let sums = linear.sums(&vec![1.0; nominal.rows.len()], &Unattended).expect("never cancelled");
+        let framed = Framed::of(&sums, 0.0, &DVector::zeros(library.columns), &Unattended)
+            .expect("never cancelled")
+            .expect("frames can be fitted");
         Self { nominal, library, framed }
     }
 
