@@ -289,6 +289,7 @@ mod tests {
     fn where_nothing_tells_the_noise_no_share_of_the_gap_is_said_to_close() {
         let known = sample::named();
         let mut unknown = known.clone();
+        unknown.comparison.floor_from_repeats = false;
         unknown.comparison.floor_source = without_noise().comparison.floor_source;
         for (finding, is_known) in [(known, true), (unknown, false)] {
             let said = [closure(&finding), on_held_out(&finding, "On held-out rows")]
