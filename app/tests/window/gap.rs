@@ -210,6 +210,19 @@ fn a_rest_that_held_out_rows_do_not_confirm_is_no_noise() {
 }
 
 #[test]
+fn a_card_says_how_large_its_effect_is_in_the_model_now_where_later_looks_changed_it() {
+    let same = added();
+    let (_, mut window) = window_of(with(same.clone()));
+    click(&mut window, "Name and add");
+    assert!(shows(&window, "in the model") && !says(&window, "by what was measured since"));
+    let mut model = same.model.clone();
+    model.effects[0].parameters[0].1 *= 0.5;
+    let (_, mut window) = window_of(with(plumbline_engine::view::GapView { model, ..same }));
+    click(&mut window, "Name and add");
+    assert!(says(&window, "in the model, by what was measured since: "));
+}
+
+#[test]
 fn a_stale_finding_cannot_be_added() {
     let (fake, mut window) = window_of(with(stale()));
     assert!(says(&window, "changed or is gone since this was found"));

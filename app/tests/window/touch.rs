@@ -333,6 +333,24 @@ fn the_place_of_the_screen_is_shown_with_its_uncertainty() {
 }
 
 #[test]
+fn a_place_that_training_touches_measured_along_the_way_does_not_stand_before_what_comes_next() {
+    let along_the_way = |in_use| TouchView {
+        placement_proposal: Some(Arc::new(placement())),
+        placement: in_use,
+        ..after(32, TouchPhase::Finished)
+    };
+    // A screen that was never placed is to be decided, whatever the touches were made for.
+    let (_, window_of_new) = window(with_touch(along_the_way(None)));
+    assert!(shows(&window_of_new, "Use this place") && !shows(&window_of_new, "Close the run"));
+    let (fake, mut window) = window(with_touch(along_the_way(Some(Arc::new(placement())))));
+    assert!(!shows(&window, "Use this place"));
+    click(&mut window, "Close the run");
+    assert_eq!(sent(&fake), [TouchCommand::Close]);
+    click(&mut window, "Place of the screen");
+    assert!(shows(&window, "Use this place"));
+}
+
+#[test]
 fn a_real_touchscreen_needs_the_touch_window_first() {
     let touch = TouchView { source: ContactSource::Window, ..first_plan() };
     let (fake, mut window) = window(with_touch(touch.clone()));
