@@ -67,7 +67,8 @@ pub(super) struct Look {
 /// (or in the same rows): there they do what the first one does, which is then as probable as all of them.
 fn without_doubles(
     blocks: &mut [Block],
-    allowed: Vec<usize>,
+    allowed: &[usize],
+    present: &DVector<f64>,
     library: &Library,
     plain: &Framed,
 ) -> Vec<usize> {
@@ -81,9 +82,12 @@ fn without_doubles(
         plain.a[(own, other)].abs() > ALIKE * (plain.a[(own, own)] * plain.a[(other, other)]).sqrt()
     };
     let (mut kept, mut doubles) = (vec![], vec![]);
-    for block in allowed {
+    for &block in allowed {
         let of = first(block);
-        let double = block < library.effects.len() && is_play(block) && block != of && is_double(block, of);
+        let is_further = block < library.effects.len() && is_play(block) && block != of;
+        // What is in the model already is taken out of the residual by its own column.
+        let is_present = || blocks[block].columns().any(|c| present[c] != 0.0);
+        let double = is_further && !is_present() && allowed.contains(&of) && is_double(block, of);
         if double { doubles.push((block, of)) } else { kept.push(block) }
     }
     for (block, of) in doubles {
@@ -138,7 +142,7 @@ impl Look {
                 present || LARGEST_VALUE * size >= SMALLEST && seen >= SEEN_SIGMAS
             })
             .collect();
-        let allowed = without_doubles(&mut blocks, allowed, library, &plain);
+        let allowed = without_doubles(&mut blocks, &allowed, &present, library, &plain);
         // Only what is looked through takes part from here on.
         let mut packed = blocks.clone();
         let mut kept: Vec<usize> = vec![];
