@@ -14,6 +14,11 @@ pub fn value(name: &str, si: f64) -> String {
 pub fn interval(name: &str, low: f64, high: f64) -> String {
     let unit = parameter_units::of(name);
     let per_si = unit.map_or(1.0, |unit| unit.per_si);
+    if parameter_units::is_endless(name, high) && !parameter_units::is_endless(name, low) {
+        let low = low * per_si;
+        let number = fixed(low, number::decimals(low.abs()));
+        return format!("{} or more", parameter_units::with_unit(&number, unit));
+    }
     let (low, high) = (low * per_si, high * per_si);
     let decimals = number::decimals((high - low).abs());
     parameter_units::with_unit(&format!("{} to {}", fixed(low, decimals), fixed(high, decimals)), unit)
@@ -27,6 +32,12 @@ pub fn words(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_interval_of_a_stiffness_that_may_be_rigid_has_one_end() {
+        assert_eq!(interval("stiffness_nm_per_rad", 6.2, 1e6), "6.2 N m/rad or more");
+        assert_eq!(interval("stiffness_nm_per_rad", 6.2, 61.0), "6 to 61 N m/rad");
+    }
 
     #[test]
     fn the_end_of_the_name_says_the_unit() {

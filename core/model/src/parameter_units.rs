@@ -9,6 +9,10 @@ pub struct Unit {
     pub name: &'static str,
 }
 
+/// A stiffness from which on nothing gives way that could be measured, N m/rad: the end of an interval whose compliance
+/// may be zero.
+pub const RIGID_NM_PER_RAD: f64 = 1e6;
+
 const DEGREES: f64 = 180.0 / std::f64::consts::PI;
 const PERCENT: Unit = Unit { per_si: 100.0, name: "%" };
 
@@ -36,6 +40,11 @@ pub fn of(name: &str) -> Option<Unit> {
     let of_end = ENDS.iter().find(|(end, ..)| name.ends_with(end));
     let of_end = of_end.map(|&(_, per_si, name)| Unit { per_si, name });
     of_end.or_else(|| SHARES.iter().any(|end| name.ends_with(end)).then_some(PERCENT))
+}
+
+/// Whether the interval of a parameter has no end there: a stiffness that may be that of something rigid.
+pub fn is_endless(name: &str, end: f64) -> bool {
+    name.ends_with("_nm_per_rad") && end.abs() >= RIGID_NM_PER_RAD
 }
 
 /// A number with its unit behind it: degrees stand at their number, all other units apart from it.
@@ -72,6 +81,12 @@ mod tests {
             assert_eq!(of(name).map(|unit| unit.name), Some(unit), "{name}");
         }
         assert_eq!(of("order"), None);
+    }
+
+    #[test]
+    fn only_a_stiffness_has_no_end() {
+        assert!(is_endless("stiffness_nm_per_rad", 1e6) && !is_endless("stiffness_nm_per_rad", 900.0));
+        assert!(!is_endless("offset_rad", 1e7));
     }
 
     #[test]

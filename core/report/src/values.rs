@@ -32,6 +32,9 @@ pub fn with_interval(found: &FoundParameter, named: bool) -> String {
     if !(low.is_finite() && high.is_finite()) {
         return format!("{label}{} (interval not known)", with_unit(significant(value, 3)));
     }
+    if parameter_units::is_endless(&found.name, found.high) {
+        return format!("{label}{} ({} or more)", with_unit(significant(value, 3)), significant(low, 2));
+    }
     let half = 0.5 * (high - low);
     let digits = number::decimals(half);
     let is_even = (0.5 * (high + low) - value).abs() <= 0.2 * half;
@@ -146,6 +149,8 @@ mod tests {
         assert_eq!(with_interval(&sag, false), "1.15 ± 0.11°/(N m)");
         assert_eq!(with_interval(&found("mass_kg", 0.118, 0.106, 0.13), false), "118 ± 12 g");
         assert_eq!(with_interval(&found("scale_u", 0.012, 0.010, 0.014), true), "wider by 1.20 ± 0.20 %");
+        let stiff = found("stiffness_nm_per_rad", 12.0, 6.2, 1e6);
+        assert_eq!(with_interval(&stiff, false), "12.0 N m/rad (6.2 or more)");
         assert!(with_interval(&found("odd", f64::NAN, f64::NAN, 1.0), false).contains("not known"));
     }
 

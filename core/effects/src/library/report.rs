@@ -1,14 +1,13 @@
 //! Parameters of effects as people and files read them.
 
 use nalgebra::{DMatrix, DVector};
+use plumbline_model::parameter_units::RIGID_NM_PER_RAD;
 
 use super::Effect;
 use super::entry::Shape;
 
 /// Standard deviations on either side of a 95 % interval.
 const NINETY_FIVE: f64 = 1.96;
-/// Stiffer than anything: the upper end of a stiffness whose compliance may be zero, N m/rad.
-const RIGID_NM_PER_RAD: f64 = 1e6;
 
 /// A parameter with its 95 % interval.
 #[derive(Clone, Debug, PartialEq)]
