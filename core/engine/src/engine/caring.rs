@@ -57,6 +57,7 @@ impl Hub<'_> {
             RobotControl::Robot(_)
             | RobotControl::Twin(_)
             | RobotControl::Touch(_)
+            | RobotControl::Withdraw(_)
             | RobotControl::Lead(_)
             | RobotControl::TurnHead { .. } => {
                 let why = self.state.meaning(WatchedThread::Robot);

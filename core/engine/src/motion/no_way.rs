@@ -104,6 +104,12 @@ pub enum NoWay {
         /// What.
         b: String,
     },
+    /// Everything on the way home is barred.
+    #[error("There is no free way home: {leg}.")]
+    NotAway {
+        /// What bars the shortest one.
+        leg: Barred,
+    },
     /// Everything on the way there is barred.
     #[error("There is no free way to {}: {leg}. Go to \"Ready to touch\" first.", place(.target))]
     NotFree {

@@ -66,7 +66,7 @@ pub struct Planner {
     model: Arc<CollisionModel>,
     floor: Arc<FloorGuard>,
     /// Joints of the arm and its hand: nothing else moves.
-    joints: Vec<JointIndex>,
+    pub(super) joints: Vec<JointIndex>,
     pub(super) hand: Vec<JointIndex>,
     /// The arm ready to touch, everything else at home.
     ready: Posture,
@@ -177,6 +177,12 @@ impl Planner {
         let bodies = BesideModel::new(self.model.clone(), &self.rig, self.solver.joints(), beside_m);
         let allowances = touch_allowances(&self.model, &self.floor, &self.chain, (&self.middle, deeper_m));
         Ok(Around { bodies, allowances, up_m: beside_m.z })
+    }
+
+    /// What may be met by an arm that touches nothing.
+    pub(super) fn nothing_met(&self, beside_m: Vector3<f64>) -> Around {
+        let bodies = BesideModel::new(self.model.clone(), &self.rig, self.solver.joints(), beside_m);
+        Around { bodies, allowances: vec![], up_m: beside_m.z }
     }
 
     /// Above the middle of the patch of the table that is worked on.

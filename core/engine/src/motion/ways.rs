@@ -1,5 +1,6 @@
 //! Ways to above a target and down that nothing is in.
 
+use nalgebra::Vector3;
 use plumbline_model::Pixel;
 use plumbline_model::Point;
 use plumbline_model::robot::Posture;
@@ -88,6 +89,28 @@ impl Planner {
             }
         }
         Ok(())
+    }
+
+    /// A free way of the arm to its home pose, from wherever it waits above the screen; `beside_m` is what it is
+    /// sent beside the place where its hand ends, m.
+    ///
+    /// # Errors
+    /// When something bars every way.
+    pub fn away(&self, from: &Posture, beside_m: Vector3<f64>) -> Result<Vec<Posture>, NoWay> {
+        if !from.is_finite() {
+            return Err(NoWay::NotANumber);
+        }
+        let around = self.nothing_met(beside_m);
+        let home = from.with(&self.joints, &self.rig.home().of(&self.joints));
+        let mut barred = None;
+        for way in self.ways(from, &home) {
+            let starts = std::iter::once(from).chain(&way);
+            match starts.zip(&way).try_for_each(|(from, to)| self.leg(from, to, &around)) {
+                Ok(()) => return Ok(way),
+                Err(reason) => drop(barred.get_or_insert(reason)),
+            }
+        }
+        Err(NoWay::NotAway { leg: barred.unwrap_or(Barred::NoWay) })
     }
 
     /// A free way to the posture above the target, and the largest turn of each of its legs.

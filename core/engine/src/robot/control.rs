@@ -7,7 +7,7 @@ use plumbline_hardware::joints::Touch;
 
 use super::command::RobotCommand;
 use super::lead::Led;
-use super::touch_order::TouchOrder;
+use super::touch_order::{TouchOrder, WithdrawOrder};
 use crate::twin::BoardLook;
 use crate::twin::command::TwinCommand;
 
@@ -24,6 +24,8 @@ pub enum RobotControl {
     BoardLooked(BoardLook),
     /// Touch the screen once.
     Touch(Box<TouchOrder>),
+    /// Go away from the screen.
+    Withdraw(Box<WithdrawOrder>),
     /// End the touch that is under way: up again, if the arm may move.
     AbandonTouch,
     /// The touch window felt a contact.

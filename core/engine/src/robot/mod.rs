@@ -31,7 +31,7 @@ pub use lead::{GivenUp, LeadAnswer, LeadOrder, Leader, Led, Reins};
 pub use path::duration;
 pub use poses::PoseLibrary;
 pub use thread::{RobotThread, Wires as RobotWires};
-pub use touch_order::{TouchMeasurement, TouchNews, TouchOrder, TouchRun, TouchStage};
+pub use touch_order::{TouchMeasurement, TouchNews, TouchOrder, TouchRun, TouchStage, WithdrawOrder};
 pub use worker::{News, Worker};
 
 pub use crate::twin::{check_scenario, scenarios};

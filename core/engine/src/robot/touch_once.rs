@@ -5,12 +5,12 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use plumbline_hardware::joints::{FloorGuard, JointState, Touch, TouchSource};
-use plumbline_model::robot::Rig;
+use plumbline_model::robot::{Posture, Rig};
 
 use super::arm::Arm;
 use super::path::Paths;
-use super::touch_order::{TouchNews, TouchOrder, TouchRun, TouchStage};
-use super::touching::{Hand, Run, Step};
+use super::touch_order::{TouchNews, TouchOrder, TouchRun, TouchStage, WithdrawOrder};
+use super::touching::{Hand, Run, Step, Withdrawing};
 use super::unable::{Interrupted, Unable};
 use super::view::Connection;
 use super::worker::Worker;
@@ -43,25 +43,83 @@ impl Worker {
     }
 
     pub(super) fn begin_touch_with(&mut self, order: TouchOrder, source: Box<dyn TouchSource>, now: Instant) {
+        let told = (order.order, order.number);
         if let Err(reason) = self.may_touch(&order) {
-            return self.touching.tell(&order, not_begun(&reason));
+            return self.touching.tell(told, not_begun(&reason));
         }
-        let refusals = self.state().and_then(|state| state.refusal.as_ref().map(|(number, _)| *number));
-        match Run::new(&self.rig, order.clone(), source, refusals.unwrap_or_default(), now) {
+        match Run::new(&self.rig, order.clone(), source, self.refusals(), now) {
             Ok(run) => {
                 (self.preview, self.refusal) = (None, None);
                 let chain = self.rig.chain(&order.tip).map_or(vec![], |chain| chain.joints().to_vec());
                 self.paths.sent_beside(&chain, order.beside_m);
-                self.touching.tell(&order, TouchRun::Doing(run.stage()));
+                self.touching.tell(told, TouchRun::Doing(run.stage()));
                 self.touching.run = Some(run);
                 self.step_touch(now);
             }
-            Err(reason) => self.touching.tell(&order, not_begun(&reason)),
+            Err(reason) => self.touching.tell(told, not_begun(&reason)),
         }
     }
 
-    fn may_touch(&self, order: &TouchOrder) -> Result<(), Interrupted> {
-        if self.touching.run.is_some() {
+    pub(super) fn begin_withdrawing(&mut self, order: WithdrawOrder) {
+        let told = (order.order, order.number);
+        let (beside_m, tip) = (order.beside_m, order.tip.clone());
+        let begun =
+            self.may_withdraw(&order).and_then(|()| Withdrawing::new(&self.rig, order, self.refusals()));
+        match begun {
+            Ok(withdrawing) => {
+                (self.preview, self.refusal) = (None, None);
+                let chain = self.rig.chain(&tip).map_or(vec![], |chain| chain.joints().to_vec());
+                self.paths.sent_beside(&chain, beside_m);
+                self.touching.tell(told, TouchRun::Doing(TouchStage::Withdrawing));
+                self.touching.withdrawing = Some(withdrawing);
+                self.step_withdrawing();
+            }
+            Err(reason) => self.touching.tell(told, not_begun(&reason)),
+        }
+    }
+
+    fn may_withdraw(&self, order: &WithdrawOrder) -> Result<(), Interrupted> {
+        self.is_free_to_move()?;
+        let paced = order.speed_rad_s > 0.0 && order.speed_rad_s.is_finite();
+        if !(paced && order.way.iter().all(|posture| self.fits(posture)) && is_believed(&order.beside_m, 0.0))
+        {
+            return Err(Interrupted::NoWay);
+        }
+        Ok(())
+    }
+
+    fn step_withdrawing(&mut self) {
+        let Some(mut withdrawing) = self.touching.withdrawing.take() else { return };
+        let step = withdrawing.step(self);
+        self.withdrew(withdrawing, step);
+    }
+
+    fn withdrew(&mut self, withdrawing: Withdrawing, step: Result<bool, Interrupted>) {
+        let told = (withdrawing.order().order, withdrawing.order().number);
+        match step {
+            Ok(false) => self.touching.withdrawing = Some(withdrawing),
+            Ok(true) => {
+                self.paths.as_described();
+                self.touching.tell(told, TouchRun::Away);
+            }
+            Err(reason) => {
+                let what = format!("The way away from the screen was interrupted. {reason}");
+                self.broken_off(told, &what, &reason);
+            }
+        }
+    }
+
+    /// Refusals up to this number are older than what begins now.
+    fn refusals(&self) -> u64 {
+        self.state().and_then(|state| state.refusal.as_ref().map(|(number, _)| *number)).unwrap_or_default()
+    }
+
+    fn fits(&self, posture: &Posture) -> bool {
+        posture.len() == self.rig.description.movable_count() && posture.is_finite()
+    }
+
+    fn is_free_to_move(&self) -> Result<(), Interrupted> {
+        if self.touching.is_busy() {
             return Err(self.touching.busy().into());
         }
         self.arm()?;
@@ -74,12 +132,14 @@ impl Worker {
         if self.present().is_none() {
             return Err(Interrupted::NotRead);
         }
-        let fits = |posture: &plumbline_model::robot::Posture| {
-            posture.len() == self.rig.description.movable_count() && posture.is_finite()
-        };
+        Ok(())
+    }
+
+    fn may_touch(&self, order: &TouchOrder) -> Result<(), Interrupted> {
+        self.is_free_to_move()?;
         let whole = order.lower.len() >= 2
             && order.lower.len() == order.lower_tip.len()
-            && order.approach.iter().chain(&order.lower).all(fits);
+            && order.approach.iter().chain(&order.lower).all(|posture| self.fits(posture));
         let positive = |value: f64| value > 0.0 && value.is_finite();
         let known = is_believed(&order.beside_m, order.deeper_m);
         let paced = positive(order.lower_speed_m_s) && positive(order.speed_rad_s);
@@ -91,6 +151,13 @@ impl Worker {
 
     /// Up again, if the finger is down; the touch then counts as missed.
     pub(super) fn abandon_touch(&mut self) {
+        if let Some(withdrawing) = self.touching.withdrawing.take() {
+            let _ = self.arm().map(|arm| arm.hold());
+            self.paths.as_described();
+            let told = (withdrawing.order().order, withdrawing.order().number);
+            let why = "The arm was stopped on its way from the screen.".to_owned();
+            self.touching.tell(told, TouchRun::Missed(why));
+        }
         let Some(mut run) = self.touching.run.take() else { return };
         let step = run.abandon(self);
         self.went(run, step);
@@ -101,6 +168,7 @@ impl Worker {
     }
 
     pub(super) fn step_touch(&mut self, now: Instant) {
+        self.step_withdrawing();
         let Some(mut run) = self.touching.run.take() else { return };
         let step = run.step(self, now);
         self.went(run, step);
@@ -108,37 +176,46 @@ impl Worker {
 
     /// Ends a touch from outside: it cannot go on.
     pub(super) fn interrupt_touch(&mut self, reason: &str) {
+        let told = Interrupted::Told(reason.to_owned());
         if let Some(run) = self.touching.run.take() {
-            self.went(run, Err(Interrupted::Told(reason.to_owned())));
+            self.went(run, Err(told));
+        } else if let Some(withdrawing) = self.touching.withdrawing.take() {
+            self.withdrew(withdrawing, Err(told));
         }
     }
 
     fn went(&mut self, run: Run, step: Result<Step, Interrupted>) {
+        let told = (run.order().order, run.order().number);
         match step {
             Ok(Step::Same) => self.touching.run = Some(run),
             Ok(Step::Next) => {
-                self.touching.tell(run.order(), TouchRun::Doing(run.stage()));
+                self.touching.tell(told, TouchRun::Doing(run.stage()));
                 self.touching.run = Some(run);
             }
             Ok(Step::End(end)) => {
                 self.paths.as_described();
-                self.touching.tell(run.order(), end);
+                self.touching.tell(told, end);
             }
             Err(reason) => {
-                // Goals below the glass become where the finger is: the next move starts outside.
-                let _ = self.arm().map(|arm| arm.hold());
-                self.paths.as_described();
                 let (number, stage) = (run.order().number, run.stage().name());
                 let what = format!("Touch {number} was interrupted ({stage}). {reason}");
-                let end = match reason.is_unheard() {
-                    true => TouchRun::Unheard(format!("{what} The arm holds where it is.")),
-                    false => TouchRun::Interrupted(format!(
-                        "{what} The arm stands where it is; when its way is free, resume."
-                    )),
-                };
-                self.touching.tell(run.order(), end);
+                self.broken_off(told, &what, &reason);
             }
         }
+    }
+
+    /// The arm holds where it is, and the run is told why.
+    fn broken_off(&mut self, told: (u64, usize), what: &str, reason: &Interrupted) {
+        // Goals below the glass become where the finger is: the next move starts outside.
+        let _ = self.arm().map(|arm| arm.hold());
+        self.paths.as_described();
+        let end = match reason.is_unheard() {
+            true => TouchRun::Unheard(format!("{what} The arm holds where it is.")),
+            false => TouchRun::Interrupted(format!(
+                "{what} The arm stands where it is; when its way is free, resume."
+            )),
+        };
+        self.touching.tell(told, end);
     }
 }
 

@@ -71,6 +71,24 @@ impl TouchOrder {
     }
 }
 
+/// Away from the screen, so that somebody can reach it: along a way, and the arm stays at its end. The
+/// finger is lowered nowhere.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WithdrawOrder {
+    /// Number of the planned touch that waits for it, from 1; 0: all are done.
+    pub number: usize,
+    /// Counts orders, those of touches among them.
+    pub order: u64,
+    /// Name of the tip that touches.
+    pub tip: String,
+    /// Postures one after the other, each checked against the one before.
+    pub way: Vec<Posture>,
+    /// What the touch before was sent beside the place where the tip ended; robot axes, m.
+    pub beside_m: Vector3<f64>,
+    /// Peak joint speed, rad/s.
+    pub speed_rad_s: f64,
+}
+
 impl TouchStage {
     /// For people, after the number of the touch.
     pub fn name(self) -> &'static str {
@@ -80,6 +98,7 @@ impl TouchStage {
             Self::Lowering => "lowering",
             Self::Dwelling => "on the glass",
             Self::Retreating => "going up",
+            Self::Withdrawing => "away from the screen",
         }
     }
 }
@@ -97,6 +116,8 @@ pub enum TouchStage {
     Dwelling,
     /// Goes up again.
     Retreating,
+    /// Goes away from the screen, so that somebody can reach it.
+    Withdrawing,
 }
 
 /// How an order is doing.
@@ -121,6 +142,8 @@ pub enum TouchRun {
     Missed(String),
     /// There was none: the lowest place was reached, and nothing was met there. The arm is up again.
     MetNothing,
+    /// The arm is away from the screen, as it was ordered; nothing was touched.
+    Away,
     /// Joints were not heard in time: nothing was refused, and the arm holds where it is. The touch may be
     /// made again once they are heard. A sentence.
     Unheard(String),

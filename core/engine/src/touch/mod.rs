@@ -9,6 +9,7 @@ mod depth;
 mod figures;
 #[cfg(all(test, target_os = "linux"))]
 mod kept_tests;
+mod over;
 #[cfg(test)]
 mod path_tests;
 #[cfg(test)]

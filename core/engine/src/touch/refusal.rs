@@ -85,6 +85,11 @@ pub enum Refusal {
     /// Everything is done.
     #[error("All touches are done, so there is none to skip.")]
     NothingToSkip,
+    /// The screen would meet it.
+    #[error(
+        "{0}: the hand is over the screen, no higher than the glass would be on its block, or nearly so. Bring it home (Robot) before the screen is raised."
+    )]
+    HandInScreen(String),
     /// Block and weight.
     #[error("Height and weight must be numbers from zero on.")]
     NotNumbers,

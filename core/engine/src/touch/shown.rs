@@ -44,7 +44,7 @@ fn outcome(aim: &Aim, run: Option<&Run>) -> TouchOutcome {
     }
     let Some(run) = run else { return TouchOutcome::Waiting };
     let number = aim.touch.number;
-    let moving = run.touch.as_ref().is_some_and(|touch| touch.number == number);
+    let moving = run.touch.as_ref().is_some_and(|touch| touch.number == Some(number));
     match run.fate(aim) {
         _ if moving => TouchOutcome::UnderWay,
         Fate::Waiting => TouchOutcome::Waiting,
@@ -260,7 +260,7 @@ impl TouchWorkflow {
 fn running(run: &Run) -> TouchPhase {
     let (number, doing) = match (&run.touch, run.task()) {
         (Some(touch), _) => {
-            let number = touch.number;
+            let number = touch.number.unwrap_or_else(|| last(run));
             (
                 number,
                 match touch.stage {
@@ -269,10 +269,15 @@ fn running(run: &Run) -> TouchPhase {
                     Some(TouchStage::Lowering) => format!("lowering to target {number}"),
                     Some(TouchStage::Dwelling) => format!("resting on target {number}"),
                     Some(TouchStage::Retreating) => format!("going up from target {number}"),
+                    Some(TouchStage::Withdrawing) => "going home, away from the screen".to_owned(),
                 },
             )
         }
         (None, Some(Task::Route(number))) => (number, format!("looking for the way to target {number}")),
+        (None, Some(Task::Away)) => {
+            let number = run.next().map_or_else(|| last(run), |aim| aim.touch.number);
+            (number, "looking for the way home, away from the screen".to_owned())
+        }
         (None, _) => {
             let number = run.unwritten.or_else(|| run.next().map(|aim| aim.touch.number)).unwrap_or(1);
             (number, format!("writing touch {number} to disk"))
@@ -281,6 +286,11 @@ fn running(run: &Run) -> TouchPhase {
     let holds = run.pause || !matches!(run.phase, Phase::Working | Phase::Finished);
     let doing = if holds { format!("{doing}, then it pauses") } else { doing };
     TouchPhase::Running { number, doing }
+}
+
+/// Number of the last planned touch.
+fn last(run: &Run) -> usize {
+    run.plan.touches.last().map_or(1, |aim| aim.touch.number)
 }
 
 /// What has to be done by hand; a sentence.

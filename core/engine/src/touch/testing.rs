@@ -22,7 +22,9 @@ use crate::ground::jobs::list::JobList;
 use crate::ground::notice::{NoticeLevel, Notices};
 use crate::ground::{Asked, LongWork, Time, Workflow};
 use crate::robot::view::{Connection, RobotView};
-use crate::robot::{RobotControl, TouchMeasurement, TouchNews, TouchOrder, TouchRun, TouchStage};
+use crate::robot::{
+    RobotControl, TouchMeasurement, TouchNews, TouchOrder, TouchRun, TouchStage, WithdrawOrder,
+};
 
 /// The rig that comes with the program.
 pub fn rig() -> Arc<Rig> {
@@ -202,6 +204,28 @@ impl Desk {
         None
     }
 
+    /// The order that the robot's thread has got to go away from the screen.
+    pub fn withdrawal(&mut self) -> Option<WithdrawOrder> {
+        while let Some(control) = self.controls.pop_front() {
+            if let RobotControl::Withdraw(order) = control {
+                return Some(*order);
+            }
+        }
+        None
+    }
+
+    /// The arm goes away from the screen as ordered.
+    pub fn withdraw(&mut self, order: &WithdrawOrder) {
+        self.robot.measured = order.way.last().cloned();
+        self.say_away(order, TouchRun::Away);
+    }
+
+    /// What the robot says of its way from the screen.
+    pub fn say_away(&mut self, order: &WithdrawOrder, state: TouchRun) {
+        let news = TouchNews { order: order.order, number: order.number, state };
+        self.with(|workflow, around, context| workflow.news(news, around, context));
+    }
+
     /// What the robot says of an order.
     pub fn say(&mut self, order: &TouchOrder, state: TouchRun) {
         let news = TouchNews { order: order.order, number: order.number, state };
@@ -246,8 +270,12 @@ impl Desk {
 
     /// The robot does whatever it is told, until nothing more comes.
     pub fn touch_all(&mut self) {
-        while let Some(order) = self.order() {
-            self.touch(&order);
+        while let Some(control) = self.controls.pop_front() {
+            match control {
+                RobotControl::Touch(order) => self.touch(&order),
+                RobotControl::Withdraw(order) => self.withdraw(&order),
+                _ => {}
+            }
         }
     }
 }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use jiff::Timestamp;
+use nalgebra::Vector3;
 use plumbline_model::robot::{Posture, Rig};
 use plumbline_model::touch_plan::{Finger, TouchArea};
 use plumbline_model::touchscreen::ScreenPlacement;
@@ -22,7 +23,7 @@ use crate::ground::jobs::JobError;
 use crate::ground::shelf::{InUse, Shelf};
 use crate::motion::{NoWay, Planner, ScreenPlace, TouchPace};
 use crate::rig_models::{made_at, screen_in, screens_in};
-use crate::robot::{RobotControl, TouchOrder};
+use crate::robot::{RobotControl, TouchOrder, WithdrawOrder};
 
 /// Work of this workflow.
 #[derive(Clone, Debug)]
@@ -67,6 +68,8 @@ pub enum TouchWork {
     },
     /// Looks for the way to the next target.
     Route(RouteRequest),
+    /// Looks for the way from the screen to the arm's home.
+    Away(AwayRequest),
     /// Measures where the screen lies, from touches.
     Place {
         /// The run that they are of.
@@ -137,6 +140,27 @@ pub struct RouteRequest {
     pub pace: TouchPace,
 }
 
+/// The way from the screen.
+#[derive(Clone, Debug)]
+pub struct AwayRequest {
+    /// The robot, its screen where it lies, on its block.
+    pub rig: Arc<Rig>,
+    /// Whether that place of the screen was measured.
+    pub place: ScreenPlace,
+    /// What touches.
+    pub finger: Finger,
+    /// Number of the touch that waits for it; 0: all are done.
+    pub number: usize,
+    /// What the touch before was sent beside its place; robot axes, m.
+    pub beside_m: Vector3<f64>,
+    /// Where the arm stands.
+    pub from: Posture,
+    /// Counts orders.
+    pub order: u64,
+    /// Peak joint speed, rad/s.
+    pub speed_rad_s: f64,
+}
+
 /// What came out.
 #[derive(Clone, Debug)]
 pub enum TouchResult {
@@ -185,6 +209,8 @@ pub enum TouchResult {
         /// The order.
         order: Result<Box<TouchOrder>, NoWay>,
     },
+    /// The way from the screen, or why there is none.
+    WayHome(Result<Box<WithdrawOrder>, NoWay>),
     /// A measured place of the screen, or why the touches do not tell.
     Placed(Result<Proposal, Arc<Unplaced>>),
     /// It is in use from now on.
@@ -209,6 +235,7 @@ impl LongWork for TouchWork {
             Self::Open { .. } => "Open the run".to_owned(),
             Self::Write { .. } => "Write the touches".to_owned(),
             Self::Route(request) => format!("Look for the way to target {}", request.aim.touch.number),
+            Self::Away(_) => "Look for the way from the screen".to_owned(),
             Self::Place { touches, .. } => {
                 format!("Place the screen from {}", counted(touches.len(), "touch"))
             }
@@ -228,6 +255,7 @@ impl LongWork for TouchWork {
                 | Self::Open { .. }
                 | Self::Write { .. }
                 | Self::Route(_)
+                | Self::Away(_)
                 | Self::Place { .. }
                 | Self::KeepChoice { .. }
         )
@@ -253,6 +281,7 @@ impl LongWork for TouchWork {
                 Ok(TouchResult::Written { revision, problem })
             }
             Self::Route(request) => Ok(route(request)),
+            Self::Away(request) => Ok(TouchResult::WayHome(away(request))),
             Self::Place { session, rig, finger, joints, touches } => {
                 let placed = placement::place(&rig, finger, &joints, &touches);
                 let proposal = |placement| Proposal { placement: Arc::new(placement), session };
@@ -357,6 +386,14 @@ fn route(request: RouteRequest) -> TouchResult {
     TouchResult::Routed { number, planner: Some(planner), order }
 }
 
+fn away(request: AwayRequest) -> Result<Box<WithdrawOrder>, NoWay> {
+    let AwayRequest { rig, place, finger, number, beside_m, from, order, speed_rad_s } = request;
+    let planner = Planner::new(&rig, finger.tip(), place)?;
+    let way = planner.away(&from, beside_m)?;
+    let tip = planner.chain().tip().to_owned();
+    Ok(Box::new(WithdrawOrder { number, order, tip, way, beside_m, speed_rad_s }))
+}
+
 impl TouchResult {
     /// The result in a sentence.
     pub fn summary(&self) -> String {
@@ -370,6 +407,7 @@ impl TouchResult {
             Self::Opened { .. } => "The run is open.".to_owned(),
             Self::Written { .. } => "The touches are on disk.".to_owned(),
             Self::Routed { .. } => "The way to the next target was looked for.".to_owned(),
+            Self::WayHome(_) => "The way from the screen was looked for.".to_owned(),
             Self::Placed(_) => "The place of the screen was measured.".to_owned(),
             Self::Saved(_) => "The measured place of the screen is in use.".to_owned(),
             Self::Forgotten => "The nominal place of the screen is in use.".to_owned(),

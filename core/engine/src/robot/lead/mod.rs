@@ -66,7 +66,10 @@ impl Leading {
         use RobotCommand::{Jog, Preview, RunPreview, Scan};
         let moves = match control {
             RobotControl::Robot(command) => matches!(command, Preview(_) | RunPreview | Jog(_) | Scan),
-            RobotControl::TurnHead { .. } | RobotControl::Touch(_) | RobotControl::Lead(_) => true,
+            RobotControl::TurnHead { .. }
+            | RobotControl::Touch(_)
+            | RobotControl::Withdraw(_)
+            | RobotControl::Lead(_) => true,
             _ => false,
         };
         moves && self.led.is_some()
@@ -97,7 +100,7 @@ impl Worker {
 
     fn may_lead(&self) -> Result<(), Unable> {
         self.arm()?;
-        if self.touching.run.is_some() {
+        if self.touching.is_busy() {
             return Err(self.touching.busy());
         }
         if self.switches.stop.is_pressed() {

@@ -10,27 +10,36 @@ mod lowering;
 mod run;
 #[cfg(test)]
 mod tests;
+mod withdrawing;
 
 use self::contacts::WindowContacts;
 pub(super) use self::hand::Hand;
 pub(super) use self::run::{Run, Step};
+pub(super) use self::withdrawing::Withdrawing;
 use super::command::RobotCommand;
 use super::control::RobotControl;
-use super::touch_order::{TouchNews, TouchOrder, TouchRun};
+use super::touch_order::{TouchNews, TouchRun};
 use super::unable::Unable;
 
-/// The touch that is under way, and how touches did.
+/// What is under way at the screen, and how it did.
 #[derive(Default)]
 pub struct Touching {
     pub(super) news: Vec<TouchNews>,
     pub(super) run: Option<Run>,
+    /// Under way instead of a touch.
+    pub(super) withdrawing: Option<Withdrawing>,
     pub(super) window: WindowContacts,
 }
 
 impl Touching {
-    /// What it does just now, for people; `None` when no touch is under way.
+    /// What it does just now, for people; `None` when nothing is under way.
     pub fn title(&self) -> Option<String> {
-        self.run.as_ref().map(Run::title)
+        self.run.as_ref().map(Run::title).or_else(|| self.withdrawing.as_ref().map(Withdrawing::title))
+    }
+
+    /// Whether the arm is on its way to the screen, at it, or away from it.
+    pub fn is_busy(&self) -> bool {
+        self.run.is_some() || self.withdrawing.is_some()
     }
 
     /// Whether a command would get in the way of the touch.
@@ -43,7 +52,7 @@ impl Touching {
             RobotControl::TurnHead { .. } => true,
             _ => false,
         };
-        moves && self.run.is_some()
+        moves && self.is_busy()
     }
 
     /// Why it was forbidden.
@@ -51,7 +60,8 @@ impl Touching {
         Unable::Busy(self.title().unwrap_or_default())
     }
 
-    pub(super) fn tell(&mut self, order: &TouchOrder, state: TouchRun) {
-        self.news.push(TouchNews { order: order.order, number: order.number, state });
+    /// Of an order, by its count and the number of its planned touch.
+    pub(super) fn tell(&mut self, (order, number): (u64, usize), state: TouchRun) {
+        self.news.push(TouchNews { order, number, state });
     }
 }

@@ -162,23 +162,7 @@ impl Run {
 
     /// The newest state, unless it says that the touch cannot go on.
     fn checked_state(&self, hand: &dyn Hand) -> Result<Arc<JointState>, Interrupted> {
-        let state = hand.state().ok_or(Interrupted::NoAnswer)?;
-        if let Some(reason) = &state.gone {
-            return Err(Interrupted::Told(reason.clone()));
-        }
-        if hand.is_stopped() || state.stopped {
-            return Err(Interrupted::Stopped);
-        }
-        if let Some((number, refusal)) = &state.refusal
-            && *number > self.refusals
-        {
-            return Err(refusal.clone().into());
-        }
-        let limp = |joint: &&JointIndex| state.of(**joint).is_some_and(|r| r.torque_on == Some(false));
-        if let Some(joint) = self.chain.iter().find(limp) {
-            let name = hand.rig().servo_of(*joint).map_or("a joint", |servo| servo.title.as_str());
-            return Err(Interrupted::Limp(name.to_owned()));
-        }
+        let state = state_that_may_move(hand, self.refusals, &self.chain)?;
         let down = match &self.stage {
             Stage::Lowering(down) | Stage::Dwelling { down, .. } => Some(down),
             _ => None,
@@ -400,8 +384,34 @@ impl Run {
     }
 }
 
+/// The newest state, unless it says that the arm cannot go on. Refusals up to a number are older than what is done.
+pub(super) fn state_that_may_move(
+    hand: &dyn Hand,
+    refusals: u64,
+    chain: &[JointIndex],
+) -> Result<Arc<JointState>, Interrupted> {
+    let state = hand.state().ok_or(Interrupted::NoAnswer)?;
+    if let Some(reason) = &state.gone {
+        return Err(Interrupted::Told(reason.clone()));
+    }
+    if hand.is_stopped() || state.stopped {
+        return Err(Interrupted::Stopped);
+    }
+    if let Some((number, refusal)) = &state.refusal
+        && *number > refusals
+    {
+        return Err(refusal.clone().into());
+    }
+    let limp = |joint: &&JointIndex| state.of(**joint).is_some_and(|r| r.torque_on == Some(false));
+    if let Some(joint) = chain.iter().find(limp) {
+        let name = hand.rig().servo_of(*joint).map_or("a joint", |servo| servo.title.as_str());
+        return Err(Interrupted::Limp(name.to_owned()));
+    }
+    Ok(state)
+}
+
 /// Begins the move of some joints to a posture; `None` when they are there.
-fn go(
+pub(super) fn go(
     hand: &dyn Hand,
     state: &JointState,
     posture: &Posture,
@@ -423,7 +433,7 @@ fn go(
 }
 
 /// Whether a move is done; `Err`: it will never be.
-fn has_arrived(state: &JointState, id: MoveId) -> Result<bool, Interrupted> {
+pub(super) fn has_arrived(state: &JointState, id: MoveId) -> Result<bool, Interrupted> {
     match state.outcome(id) {
         None => Ok(false),
         Some(MoveOutcome::Arrived { .. }) => Ok(true),
@@ -440,7 +450,7 @@ fn tick_rad(rig: &Rig, joint: JointIndex) -> f64 {
 }
 
 /// Joints of the arm of a tip, its hand included.
-fn joints_of(rig: &Rig, tip: &str) -> Option<Vec<plumbline_model::robot::JointIndex>> {
+pub(super) fn joints_of(rig: &Rig, tip: &str) -> Option<Vec<plumbline_model::robot::JointIndex>> {
     let arm = rig.arms.iter().find(|arm| arm.tips.iter().any(|known| known.link == tip))?;
     Some([arm.joints.clone(), arm.hand.clone()].concat())
 }

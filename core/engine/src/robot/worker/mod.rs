@@ -185,6 +185,10 @@ impl Worker {
                 self.begin_touch(*order, Instant::now());
                 Ok(())
             }
+            RobotControl::Withdraw(order) => {
+                self.begin_withdrawing(*order);
+                Ok(())
+            }
             RobotControl::AbandonTouch => {
                 self.abandon_touch();
                 Ok(())

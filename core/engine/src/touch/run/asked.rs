@@ -53,7 +53,7 @@ impl Run {
 
     /// Goes on by itself from now on.
     pub fn resume(&mut self) {
-        (self.misses, self.pause) = (0, false);
+        (self.misses, self.pause, self.is_away) = (0, false, false);
         self.phase = if self.progress.finished { Phase::Finished } else { Phase::Working };
     }
 
@@ -65,7 +65,7 @@ impl Run {
                 touch.at_end = AtEnd::Finish;
                 context.control(RobotControl::AbandonTouch);
             }
-            None => self.finish(now, context),
+            None => self.end_early(now, context),
         }
     }
 
@@ -81,11 +81,12 @@ impl Run {
     /// The screen stands on a block, the hand carries a weight, as they should or not.
     ///
     /// # Errors
-    /// A sentence, when these are no numbers.
-    pub fn prepared(&mut self, preparation: [f64; 2]) -> Result<(), Refusal> {
+    /// A sentence, when these are no numbers, or a hand is where the screen would be.
+    pub fn prepared(&mut self, preparation: [f64; 2], now: &Now<'_>) -> Result<(), Refusal> {
         if preparation.iter().any(|value| !(value.is_finite() && *value >= 0.0)) {
             return Err(Refusal::NotNumbers);
         }
+        self.may_be_prepared(preparation, now)?;
         self.progress.prepared = preparation;
         self.changed();
         if let Phase::Preparing(_) = self.phase {

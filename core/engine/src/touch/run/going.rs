@@ -31,14 +31,13 @@ impl Run {
             self.phase = Phase::Paused(None);
             return;
         }
-        let Some(aim) = self.next().cloned() else { return self.finish(now, context) };
+        let Some(aim) = self.next().cloned() else { return self.put_back(now, context) };
         if let Some(trouble) = now.trouble {
             self.phase = Phase::Paused(Some(trouble.to_string()));
             return;
         }
         if aim.preparation() != self.progress.prepared {
-            self.phase = Phase::Preparing(aim.preparation());
-            return;
+            return self.prepare(aim.preparation(), aim.touch.number, now, context);
         }
         self.route(aim, now, context);
     }
@@ -130,7 +129,9 @@ impl Run {
             && self.next().is_some_and(|aim| aim.touch.number == number);
         match order {
             Ok(order) if wanted => {
+                let number = Some(number);
                 self.touch = Some(UnderWay { order: order.order, number, stage: None, at_end: AtEnd::Keep });
+                (self.is_away, self.beside_m) = (false, order.beside_m);
                 context.control(RobotControl::Touch(order));
             }
             Err(reason) if wanted => {
@@ -148,12 +149,13 @@ impl Run {
                 "The touches could not be written. They are kept in memory; go on to write them again."
                     .to_owned(),
             ),
-            _ => Phase::Paused(Some("The way to the next target was not looked for to the end.".to_owned())),
+            _ => Phase::Paused(Some("The way of the arm was not looked for to the end.".to_owned())),
         };
     }
 
     pub(super) fn finish(&mut self, now: &Now<'_>, context: &mut Context<'_>) {
         self.phase = Phase::Finished;
+        self.ends = false;
         self.progress.finished = true;
         self.ended = true;
         self.changed();
@@ -163,13 +165,13 @@ impl Run {
 
 /// Orders count through the program, so that what is said of one is never taken for another's, be it
 /// of the robot or of the twin.
-fn next_order() -> u64 {
+pub(super) fn next_order() -> u64 {
     use std::sync::atomic::{AtomicU64, Ordering};
     static ORDERS: AtomicU64 = AtomicU64::new(1);
     ORDERS.fetch_add(1, Ordering::Relaxed)
 }
 
 /// Share of the usual speed; a view that says nothing says the usual one.
-fn speed(robot: &RobotView) -> f64 {
+pub(super) fn speed(robot: &RobotView) -> f64 {
     if robot.speed > 0.0 { robot.speed } else { 1.0 }
 }

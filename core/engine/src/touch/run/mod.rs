@@ -1,6 +1,7 @@
 //! One run: which touch is next, what is waited for, what is not on disk yet.
 
 mod asked;
+mod away;
 mod going;
 mod news;
 
@@ -8,6 +9,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use nalgebra::Vector3;
 use plumbline_model::robot::Rig;
 use plumbline_model::session::Touchscreen;
 
@@ -51,6 +53,8 @@ pub enum Task {
     Write,
     /// The way to a target is being looked for.
     Route(usize),
+    /// The way from the screen is being looked for.
+    Away,
 }
 
 /// What is done when the touch under way ends.
@@ -71,8 +75,8 @@ enum AtEnd {
 pub struct UnderWay {
     /// Which order.
     order: u64,
-    /// Number of the planned touch.
-    pub number: usize,
+    /// Number of the planned touch; on its way from the screen the one that waits for it, `None` where all are done.
+    pub number: Option<usize>,
     /// What the arm does; `None` before it said so.
     pub stage: Option<TouchStage>,
     at_end: AtEnd,
@@ -123,6 +127,12 @@ pub struct Run {
     pub held: usize,
     contacts: Vec<Instant>,
     planner: Option<(Touchscreen, Arc<Planner>)>,
+    /// What the newest touch was sent beside its place; robot axes, m.
+    beside_m: Vector3<f64>,
+    /// The arm went away from the screen, and has not been sent back since.
+    is_away: bool,
+    /// The operator ends it before all is done.
+    ends: bool,
     ended: bool,
     /// Whether the disk knows that it is finished.
     end_on_disk: bool,
@@ -158,6 +168,9 @@ impl Run {
             held: 0,
             contacts: vec![],
             planner: None,
+            beside_m: Vector3::zeros(),
+            is_away: false,
+            ends: false,
             ended: false,
         }
     }
@@ -208,6 +221,9 @@ impl Run {
     /// The touch that is done next: in the order of the plan; then those that are made once more,
     /// first those that need no other block or weight.
     pub fn next(&self) -> Option<&Aim> {
+        if self.ends {
+            return None;
+        }
         let waits = |aim: &&Aim| {
             aim.refusal.is_none()
                 && !self.progress.again.contains(&aim.touch.number)

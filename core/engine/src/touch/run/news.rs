@@ -27,44 +27,58 @@ impl Run {
             return None;
         }
         let UnderWay { number, at_end, .. } = self.touch.take()?;
-        let mut contact = None;
-        match news.state {
-            TouchRun::Touched(measured) => {
-                contact = Some(measured.pixel);
-                self.contacts.push(measured.at);
-                if at_end == AtEnd::Skip {
-                    self.end(number, Ended::Skipped);
-                } else {
-                    self.touched(number, &measured);
-                }
+        let contact = match news.state {
+            TouchRun::Away => {
+                self.is_away = true;
+                None
             }
-            TouchRun::Missed(_) | TouchRun::MetNothing if at_end == AtEnd::Skip => {
-                self.end(number, Ended::Skipped);
-            }
-            TouchRun::MetNothing if at_end == AtEnd::Keep => self.met_nothing(number, context),
-            TouchRun::Missed(why) if at_end == AtEnd::Keep => self.missed(number, why),
-            TouchRun::Unheard(why) if at_end == AtEnd::Keep && self.waits_to_be_heard(context) => {
-                let text = format!(
-                    "{why} The run goes on by itself with touch {number} as soon as the joints are heard again."
-                );
-                self.phase = Phase::Paused(Some(text));
-                self.held += 1;
-            }
-            TouchRun::Interrupted(why) | TouchRun::Unheard(why) => {
-                if at_end == AtEnd::Skip {
-                    self.end(number, Ended::Skipped);
-                }
-                if at_end != AtEnd::Finish {
-                    self.interrupted(number, &why);
-                }
-            }
-            TouchRun::Missed(_) | TouchRun::MetNothing | TouchRun::Doing(_) => {}
-        }
+            state => self.touch_ended(state, number, at_end, context),
+        };
         if at_end == AtEnd::Finish {
-            self.finish(now, context);
+            self.end_early(now, context);
         }
         self.go_on(now, context);
         contact
+    }
+
+    /// A touch, or the way from the screen that a touch waits for, has come to an end.
+    fn touch_ended(
+        &mut self,
+        state: TouchRun,
+        number: Option<usize>,
+        at_end: AtEnd,
+        context: &mut Context<'_>,
+    ) -> Option<Pixel<Screen>> {
+        if at_end == AtEnd::Skip
+            && let Some(number) = number
+        {
+            self.end(number, Ended::Skipped);
+        }
+        match (state, number) {
+            (TouchRun::Touched(measured), Some(number)) => {
+                self.contacts.push(measured.at);
+                if at_end != AtEnd::Skip {
+                    self.touched(number, &measured);
+                }
+                return Some(measured.pixel);
+            }
+            (TouchRun::MetNothing, Some(number)) if at_end == AtEnd::Keep => {
+                self.met_nothing(number, context)
+            }
+            (TouchRun::Missed(why), Some(number)) if at_end == AtEnd::Keep => self.missed(number, why),
+            (TouchRun::Unheard(why), _) if at_end == AtEnd::Keep && self.waits_to_be_heard(context) => {
+                let with = number.map_or_else(String::new, |number| format!(" with touch {number}"));
+                let text =
+                    format!("{why} The run goes on by itself{with} as soon as the joints are heard again.");
+                self.phase = Phase::Paused(Some(text));
+                self.held += 1;
+            }
+            (TouchRun::Interrupted(why) | TouchRun::Unheard(why), _) if at_end != AtEnd::Finish => {
+                self.interrupted(number, &why);
+            }
+            _ => {}
+        }
+        None
     }
 
     fn touched(&mut self, number: usize, measured: &crate::robot::TouchMeasurement) {
@@ -117,11 +131,12 @@ impl Run {
     }
 
     /// The touch under way cannot go on without the operator.
-    fn interrupted(&mut self, number: usize, why: &str) {
+    fn interrupted(&mut self, number: Option<usize>, why: &str) {
         self.pause = false;
         if self.phase == Phase::Working {
-            let again = format!("Touch {number} is made again when you go on.");
-            self.phase = Phase::Paused(Some(format!("{why} {again}")));
+            let again = number
+                .map_or_else(String::new, |number| format!(" Touch {number} is made again when you go on."));
+            self.phase = Phase::Paused(Some(format!("{why}{again}")));
         }
     }
 
@@ -153,9 +168,8 @@ impl Run {
     /// The robot is gone: no more is heard of the touch under way.
     pub fn lost(&mut self, why: &str) {
         let Some(touch) = self.touch.take() else { return };
-        match touch.at_end {
-            AtEnd::Skip => self.end(touch.number, Ended::Skipped),
-            AtEnd::Keep | AtEnd::Retry | AtEnd::Finish => {}
+        if let (AtEnd::Skip, Some(number)) = (touch.at_end, touch.number) {
+            self.end(number, Ended::Skipped);
         }
         self.interrupted(touch.number, why);
     }

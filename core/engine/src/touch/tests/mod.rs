@@ -1,6 +1,7 @@
 //! The whole life of a run, with a robot that does what it is told when the test says so.
 
 mod planning;
+mod raised;
 mod screen;
 mod session;
 mod under_way;

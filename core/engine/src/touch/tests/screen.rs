@@ -41,7 +41,7 @@ fn a_raised_screen_and_a_weight_are_waited_for() {
             assert!(rig().touchscreen.raised(screen_height_m) == raised, "everyone is told");
         }
     }
-    assert_eq!(asked, [(0.0, 0.25), (0.02, 0.25), (0.02, 0.0)]);
+    assert_eq!(asked, [(0.0, 0.25), (0.02, 0.25), (0.02, 0.0), (0.0, 0.0)], "at last as it lay");
     assert_eq!(desk.view().phase, TouchPhase::Finished);
     assert!(desk.workflow.screen().is_none(), "back where it lay");
     let read = Session::read(&only_session(folder.path())).expect("readable").touches.expect("touches");

@@ -262,7 +262,7 @@ impl Workflow for TouchWorkflow {
                 (self.placement, self.is_known) = (None, true);
                 self.plan_anew(around, context);
             }
-            TouchResult::Written { .. } | TouchResult::Routed { .. } => {
+            TouchResult::Written { .. } | TouchResult::Routed { .. } | TouchResult::WayHome(_) => {
                 self.run_work_done(id, result, around, context);
             }
             // A plan or a session that nobody waits for any more.

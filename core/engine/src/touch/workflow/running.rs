@@ -44,7 +44,7 @@ impl TouchWorkflow {
             TouchCommand::Skip => run.skip(context)?,
             TouchCommand::Finish => run.finish_now(&now, context),
             TouchCommand::Prepared { screen_height_m, payload_kg } => {
-                run.prepared([screen_height_m, payload_kg])?;
+                run.prepared([screen_height_m, payload_kg], &now)?;
             }
             TouchCommand::Redo { number } => redo(run, number)?,
             TouchCommand::Reject { number } if run.progress.reject(number) => run.changed(),
@@ -112,6 +112,7 @@ impl TouchWorkflow {
             TouchResult::Routed { number, planner, order } => {
                 run.routed(number, planner, order, &now, context);
             }
+            TouchResult::WayHome(order) => run.way_home(order, &now, context),
             _ => {}
         }
     }
@@ -173,7 +174,7 @@ fn redo(run: &mut Run, number: usize) -> Result<(), Refusal> {
     if let Some(reason) = &aim.refusal {
         return Err(Refusal::CannotBeTouched { number, reason: reason.clone() });
     }
-    if run.touch.as_ref().is_some_and(|touch| touch.number == number) {
+    if run.touch.as_ref().is_some_and(|touch| touch.number == Some(number)) {
         return Err(Refusal::BeingTouched(number));
     }
     run.progress.redo(number);

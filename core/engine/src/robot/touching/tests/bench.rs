@@ -259,8 +259,8 @@ impl Bench {
         }
     }
 
-    /// One tick, then what came of it.
-    pub fn tick(&mut self) -> Option<TouchRun> {
+    /// One tick.
+    pub fn pass(&mut self) {
         self.now += TICK;
         {
             let mut made = self.arm();
@@ -269,6 +269,11 @@ impl Bench {
             made.past.push(now);
         }
         self.worker.tick(self.now);
+    }
+
+    /// One tick, then what came of it.
+    pub fn tick(&mut self) -> Option<TouchRun> {
+        self.pass();
         self.collect()
     }
 

@@ -1,5 +1,6 @@
 //! Touches with a made-up arm and a made-up screen: every stage, and everything that can go wrong.
 
+mod away;
 mod bench;
 mod failures;
 mod twin;

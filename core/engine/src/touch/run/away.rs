@@ -1,0 +1,146 @@
+//! Before somebody reaches for the screen or the hand the arm goes away from the screen: what is put under the screen
+//! lifts it, and a finger that hovers over it would be pushed into it.
+
+use std::sync::Arc;
+
+use plumbline_model::robot::Rig;
+use plumbline_model::session::Touchscreen;
+
+use super::going::{next_order, speed};
+use super::{AtEnd, Now, Phase, Run, Task, UnderWay};
+use crate::ground::notice::NoticeLevel;
+use crate::motion::{NoWay, TouchPace};
+use crate::robot::{RobotControl, TouchStage, WithdrawOrder};
+use crate::touch::over::{TO_REACH, arm_in, is_away};
+use crate::touch::refusal::Refusal;
+use crate::touch::work::{AwayRequest, Context, TouchWork};
+
+/// The screen on the table, nothing at the hand.
+const AS_IT_LIES: [f64; 2] = [0.0, 0.0];
+
+impl Run {
+    /// All is done, or shall be: the screen is put back and the weight taken off before the run is over, for from then
+    /// on the screen is taken to lie where it lay.
+    pub(super) fn put_back(&mut self, now: &Now<'_>, context: &mut Context<'_>) {
+        if self.progress.prepared == AS_IT_LIES || now.trouble.is_some() {
+            return self.leave_it_so(now, context);
+        }
+        self.prepare(AS_IT_LIES, 0, now, context);
+    }
+
+    /// The run is over, even where the screen still stands on its block or the weight still hangs at the hand.
+    pub(super) fn leave_it_so(&mut self, now: &Now<'_>, context: &mut Context<'_>) {
+        let [height_m, mass_kg] = self.progress.prepared;
+        let mut left = vec![];
+        if height_m > 0.0 {
+            left.push(format!(
+                "put the screen back on the table (it stands {:.0} mm higher)",
+                height_m * 1e3
+            ));
+        }
+        if mass_kg > 0.0 {
+            left.push(format!("take the {:.0} g off the hand", mass_kg * 1e3));
+        }
+        if !left.is_empty() {
+            let text =
+                format!("Before anything moves: {}. From now on it is taken to be so.", left.join(" and "));
+            context.notices.add(NoticeLevel::Warning, text);
+        }
+        self.finish(now, context);
+    }
+
+    /// The block and the weight that a touch needs (`number`; 0: all are done) are asked for once the arm is away.
+    pub(super) fn prepare(
+        &mut self,
+        wanted: [f64; 2],
+        number: usize,
+        now: &Now<'_>,
+        context: &mut Context<'_>,
+    ) {
+        let highest = now.screen.raised(wanted[0].max(self.progress.prepared[0]));
+        if self.is_away || self.is_clear_of(&highest, now) {
+            self.phase = Phase::Preparing(wanted);
+            return;
+        }
+        let Some(from) = now.robot.measured.clone() else {
+            let why = "The joints have not been read yet. Wait a moment, then go on.";
+            self.phase = Phase::Paused(Some(why.to_owned()));
+            return;
+        };
+        let screen = now.screen.raised(self.progress.prepared[0]);
+        let request = AwayRequest {
+            rig: Arc::new(Rig { touchscreen: screen, ..(**now.rig).clone() }),
+            place: now.place,
+            finger: self.plan.options.finger,
+            number,
+            beside_m: self.beside_m,
+            from,
+            order: next_order(),
+            speed_rad_s: TouchPace::default().at(speed(now.robot)).speed_rad_s,
+        };
+        self.task = Some((context.start(TouchWork::Away(request)), Task::Away));
+    }
+
+    /// Whether the arm that touches has no tip on this screen or near it.
+    fn is_clear_of(&self, screen: &Touchscreen, now: &Now<'_>) -> bool {
+        let tip = self.plan.options.finger.tip();
+        let arm = now.rig.arms.iter().find(|arm| arm.tips.iter().any(|known| known.link == tip));
+        let Some(arm) = arm else { return true };
+        now.robot.known(&arm.joints).is_some_and(|posture| is_away(now.rig, arm, screen, posture, TO_REACH))
+    }
+
+    /// The way from the screen was found, or why not.
+    pub fn way_home(
+        &mut self,
+        order: Result<Box<WithdrawOrder>, NoWay>,
+        now: &Now<'_>,
+        context: &mut Context<'_>,
+    ) {
+        self.task = None;
+        // Meanwhile it may have been paused, or something changed that has to be written.
+        let wanted =
+            self.phase == Phase::Working && !self.pause && now.trouble.is_none() && self.is_on_disk();
+        match order {
+            Ok(order) if wanted => {
+                self.touch = Some(UnderWay {
+                    order: order.order,
+                    number: (order.number > 0).then_some(order.number),
+                    stage: Some(TouchStage::Withdrawing),
+                    at_end: AtEnd::Keep,
+                });
+                context.control(RobotControl::Withdraw(order));
+            }
+            Err(reason) if wanted => {
+                let text = format!(
+                    "The arm has to go away from the screen before the screen or the hand is reached for. {reason} Bring it home (Robot, in small steps where something is in the way), then go on."
+                );
+                self.phase = Phase::Paused(Some(text));
+            }
+            Ok(_) | Err(_) => self.go_on(now, context),
+        }
+    }
+
+    /// Whether the screen can be taken to stand at a height now.
+    ///
+    /// # Errors
+    /// A sentence, while a hand is over it: it cannot have been put there without meeting the hand.
+    pub fn may_be_prepared(&self, [to_m, _]: [f64; 2], now: &Now<'_>) -> Result<(), Refusal> {
+        if !to_m.is_finite() || to_m <= self.progress.prepared[0] {
+            return Ok(());
+        }
+        match arm_in(now.rig, &now.screen.raised(to_m), now.robot) {
+            Some(arm) => Err(Refusal::HandInScreen(arm.title.clone())),
+            None => Ok(()),
+        }
+    }
+
+    /// The operator ends the run before all is done; asked once more, as it stands.
+    pub(super) fn end_early(&mut self, now: &Now<'_>, context: &mut Context<'_>) {
+        let is_put_back = self.progress.prepared == AS_IT_LIES;
+        if is_put_back || self.next().is_none() || now.trouble.is_some() {
+            return self.leave_it_so(now, context);
+        }
+        (self.ends, self.pause, self.phase) = (true, false, Phase::Working);
+        self.go_on(now, context);
+    }
+}

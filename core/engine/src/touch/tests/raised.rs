@@ -1,0 +1,176 @@
+//! A screen that is put on blocks: nobody reaches under a finger, and at the end it lies where it lay.
+
+use plumbline_model::robot::Posture;
+use plumbline_model::touch_plan::{Pattern, PlanOptions};
+
+use super::{folder, paused};
+use crate::ground::notice::NoticeLevel;
+use crate::robot::{TouchOrder, TouchRun, WithdrawOrder};
+use crate::touch::command::TouchCommand;
+use crate::touch::testing::{Desk, grid, rig};
+use crate::touch::view::{TouchOutcome, TouchPhase};
+
+const BLOCK_M: f64 = 0.06;
+
+/// Two touches as the screen lies, then two on a block.
+fn on_a_block() -> PlanOptions {
+    let patterns = vec![Pattern::Grid { columns: 2, rows: 1 }];
+    PlanOptions { patterns, screen_heights_m: vec![0.0, BLOCK_M], ..grid(2, 1) }
+}
+
+/// The first block is touched, and the finger hovers where it went up; its last way down.
+fn touched_as_it_lies(desk: &mut Desk) -> Vec<Posture> {
+    desk.start(on_a_block());
+    let mut lower = vec![];
+    for _ in 0..2 {
+        let order = desk.order().expect("as the screen lies no arm has to go away");
+        desk.robot.measured = order.lower.first().cloned();
+        desk.touch(&order);
+        lower = order.lower;
+    }
+    lower
+}
+
+fn waits_for(desk: &Desk) -> Option<(f64, f64)> {
+    match desk.view().phase {
+        TouchPhase::Waiting { prepare, .. } => prepare,
+        _ => None,
+    }
+}
+
+/// Height of the fingertip above the glass where it lies on the table, m.
+fn above_glass_m(posture: &Posture) -> f64 {
+    let tip = rig().chain("right_index_tip").map(|chain| chain.robot_from_tip_in(posture).translation_m());
+    rig().touchscreen.height_above_m(nalgebra::Point3::from(tip.expect("NICO's finger")).into())
+}
+
+fn done(screen_height_m: f64) -> TouchCommand {
+    TouchCommand::Prepared { screen_height_m, payload_kg: 0.0 }
+}
+
+#[test]
+fn the_arm_goes_home_before_the_screen_is_raised_under_it() {
+    let folder = folder();
+    let mut desk = Desk::new(folder.path());
+    let hovers = touched_as_it_lies(&mut desk)[0].clone();
+    assert!(above_glass_m(&hovers) < 0.10, "{} m", above_glass_m(&hovers));
+    let away: WithdrawOrder = desk.withdrawal().expect("first it goes away");
+    assert!(desk.order().is_none(), "and does nothing else");
+    match desk.view().phase {
+        TouchPhase::Running { doing, .. } => assert!(doing.contains("away from the screen"), "{doing}"),
+        other => panic!("nobody is asked for a block while a finger is there: {other:?}"),
+    }
+    // Every place of the way is at least as high as it hovers, and the last one is home.
+    assert!(away.way.iter().all(|posture| above_glass_m(posture) > above_glass_m(&hovers) - 0.02));
+    let (home, end) = (rig().home(), away.way.last().expect("a way"));
+    let arm = rig().arm("right").cloned().expect("NICO's arm");
+    assert_eq!(end.of(&arm.joints), home.of(&arm.joints));
+    desk.withdraw(&away);
+    assert_eq!(waits_for(&desk), Some((BLOCK_M, 0.0)));
+    desk.apply(done(BLOCK_M));
+    let order = desk.order().unwrap_or_else(|| panic!("it does not go on: {}", desk.said()));
+    let lowest = order.lower.last().expect("a way down");
+    assert!(above_glass_m(lowest) > BLOCK_M - 0.02, "as high as the block");
+    desk.touch(&order);
+    let order = desk.order().expect("the last one");
+    desk.robot.measured = order.lower.first().cloned();
+    desk.touch(&order);
+
+    // It lies as it lay before the run is over: from then on it is taken to.
+    let away = desk.withdrawal().expect("away once more");
+    assert_eq!(away.number, 0, "no touch waits for it");
+    desk.withdraw(&away);
+    assert_eq!(waits_for(&desk), Some((0.0, 0.0)));
+    assert!(desk.view().next.contains("back on the table"), "{}", desk.view().next);
+    desk.apply(done(0.0));
+    let view = desk.view();
+    assert_eq!((view.phase, view.counts.touched), (TouchPhase::Finished, 4));
+    assert!(desk.workflow.screen().is_none());
+}
+
+#[test]
+fn no_block_is_believed_while_a_hand_is_over_the_screen() {
+    let folder = folder();
+    let mut desk = Desk::new(folder.path());
+    let hovers = touched_as_it_lies(&mut desk)[0].clone();
+    let away = desk.withdrawal().expect("away");
+    desk.withdraw(&away);
+    let home = desk.robot.measured.replace(hovers);
+    desk.apply(done(BLOCK_M));
+    assert!(desk.said().contains("Right arm: the hand is over the screen"), "{}", desk.said());
+    assert_eq!(waits_for(&desk), Some((BLOCK_M, 0.0)), "it still waits");
+    assert!(desk.order().is_none() && desk.workflow.screen().is_none());
+    desk.robot.measured = home;
+    desk.apply(done(BLOCK_M));
+    assert!(desk.order().is_some());
+}
+
+#[test]
+fn an_arm_that_is_away_already_is_not_moved() {
+    let folder = folder();
+    let mut desk = Desk::new(folder.path());
+    desk.robot.measured = Some(rig().home());
+    desk.start(PlanOptions { screen_heights_m: vec![BLOCK_M], ..on_a_block() });
+    assert_eq!(waits_for(&desk), Some((BLOCK_M, 0.0)));
+    assert!(desk.withdrawal().is_none());
+}
+
+#[test]
+fn a_way_home_that_is_interrupted_is_gone_when_the_run_goes_on() {
+    let folder = folder();
+    let mut desk = Desk::new(folder.path());
+    touched_as_it_lies(&mut desk);
+    let away = desk.withdrawal().expect("away");
+    desk.say_away(&away, TouchRun::Interrupted("STOP was pressed.".to_owned()));
+    assert!(paused(&desk).starts_with("STOP was pressed."), "{}", paused(&desk));
+    desk.apply(TouchCommand::Resume);
+    let again = desk.withdrawal().expect("once more");
+    assert!(again.order > away.order);
+    // The touch that waits for it can be left out meanwhile, and the next one waits for it, too.
+    desk.apply(TouchCommand::Skip);
+    desk.say_away(&again, TouchRun::Missed("stopped".to_owned()));
+    assert_eq!(desk.view().touches[2].outcome, TouchOutcome::Skipped);
+    let third = desk.withdrawal().expect("the other one needs the block as well");
+    desk.withdraw(&third);
+    assert_eq!(waits_for(&desk), Some((BLOCK_M, 0.0)));
+}
+
+#[test]
+fn a_run_that_is_ended_early_asks_for_the_screen_back_and_no_more_than_once() {
+    let folder = folder();
+    let mut desk = Desk::new(folder.path());
+    touched_as_it_lies(&mut desk);
+    let away = desk.withdrawal().expect("away");
+    desk.withdraw(&away);
+    desk.apply(done(BLOCK_M));
+    let order: TouchOrder = desk.order().expect("on the block");
+    desk.robot.measured = order.lower.first().cloned();
+    desk.apply(TouchCommand::Finish);
+    desk.say(&order, TouchRun::Missed("broken off".to_owned()));
+    let away = desk.withdrawal().expect("it goes away");
+    desk.withdraw(&away);
+    assert_eq!(waits_for(&desk), Some((0.0, 0.0)));
+    // Whoever cannot put it back now is told what follows from that.
+    desk.apply(TouchCommand::Finish);
+    assert_eq!(desk.view().phase, TouchPhase::Finished);
+    let warned = desk.notices.view().iter().any(|notice| {
+        notice.level == NoticeLevel::Warning && notice.text.contains("put the screen back on the table")
+    });
+    assert!(warned);
+}
+
+#[test]
+fn where_no_way_leads_home_it_is_said_what_to_do() {
+    let folder = folder();
+    let mut desk = Desk::new(folder.path());
+    touched_as_it_lies(&mut desk);
+    let away = desk.withdrawal().expect("away");
+    desk.say_away(&away, TouchRun::Interrupted("Something else moved the arm.".to_owned()));
+    // An arm of which nobody knows where it is is not taken to be away.
+    let stands = desk.robot.measured.clone().expect("it hovers");
+    desk.robot.measured = Some(Posture::new(vec![f64::NAN; stands.len()]));
+    desk.apply(TouchCommand::Resume);
+    assert!(desk.withdrawal().is_none());
+    let why = paused(&desk);
+    assert!(why.contains("not a number") && why.contains("Bring it home"), "{why}");
+}
