@@ -5,6 +5,7 @@
 
 mod replay;
 
+use std::ffi::OsStr;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -163,11 +164,11 @@ fn is_enabled(node: Node<'_>) -> bool {
     !node.accesskit_node().is_disabled()
 }
 
-/// Types a path into the field that has the focus, in place of what stands there.
-pub fn type_over(window: &mut Window, path: &Path) {
+/// Types a path, or other text, into the field that has the focus, in place of what stands there.
+pub fn type_over(window: &mut Window, text: impl AsRef<OsStr>) {
     window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
     window.run_steps(1);
-    window.event(egui::Event::Text(path.to_str().expect("a path in letters").to_owned()));
+    window.event(egui::Event::Text(text.as_ref().to_str().expect("text in letters").to_owned()));
     window.run_steps(2);
 }
 

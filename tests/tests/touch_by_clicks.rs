@@ -9,9 +9,12 @@ use std::time::Duration;
 use egui_kittest::kittest::Queryable as _;
 use plumbline_engine::models::Method;
 use plumbline_engine::view::{StepState, TouchFigures, TouchPhase};
+use plumbline_model::Point;
 use plumbline_model::session::Session;
 use plumbline_model::touch_plan::Finger;
-use plumbline_tests::{Window, click, click_containing, for_a_while, until, view, window};
+use plumbline_tests::{
+    Window, click, click_containing, for_a_while, type_over, until, view, window, window_of_size,
+};
 
 /// Waits for the end of a run; a run that a busy machine interrupted goes on by itself or by a click.
 fn finish_run(window: &mut Window, what: &str) {
@@ -150,4 +153,48 @@ fn the_left_finger_touches_the_glass() {
     until(&mut window, "the pause", |window| matches!(view(window).touch.phase, TouchPhase::Paused { .. }));
     let manifest = Session::read(&session).expect("a session that can be read").manifest;
     assert_eq!(manifest.chain.map(|chain| chain.tip).as_deref(), Some(Finger::Left.tip()));
+}
+
+/// Clicks that the screen stands as it was asked for, which nobody may be asked while a finger is over it.
+fn put_the_screen(window: &mut Window, height_m: f64) {
+    until(
+        window,
+        "to be asked for the screen",
+        |window| matches!(view(window).touch.phase, TouchPhase::Waiting { prepare: Some((asked_m, _)), .. } if asked_m == height_m),
+    );
+    let view = view(window);
+    let (rig, measured) = view.robot.rig.clone().zip(view.robot.measured.clone()).expect("connected");
+    let tip = rig.chain(Finger::Right.tip()).expect("a tip").robot_from_tip_in(&measured).translation_m();
+    let above_m = rig.touchscreen.height_above_m(Point::new(tip.x, tip.y, tip.z));
+    assert!(above_m > 0.2, "the finger is {above_m} m above the glass");
+    click(window, "Done, go on");
+}
+
+#[test]
+fn the_screen_is_raised_once_the_finger_is_away_and_put_back_before_the_run_is_over() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    // So high that the whole plan can be clicked without scrolling.
+    let mut window = window_of_size(&folder.path().join("data"), Some("lab"), egui::vec2(1280.0, 1300.0));
+    until(&mut window, "the twin's joints", |window| view(window).robot.measured.is_some());
+    click(&mut window, "Touch");
+    click_containing(&mut window, "Plan to touch the corners");
+    until(&mut window, "the plan", |window| view(window).touch.phase == TouchPhase::Planned);
+    click(&mut window, "Heights of the screen");
+    type_over(&mut window, "0, 60");
+    window.key_press(egui::Key::Enter);
+    until(&mut window, "the plan on a block", |window| {
+        let touch = &view(window).touch;
+        let plan = touch.plan.as_ref().filter(|_| touch.phase == TouchPhase::Planned);
+        plan.is_some_and(|plan| plan.options.screen_heights_m == [0.0, 0.06] && plan.reachable >= 6)
+    });
+    click_containing(&mut window, "Touch the corners");
+    put_the_screen(&mut window, 0.06);
+    put_the_screen(&mut window, 0.0);
+    until(&mut window, "the end", |window| view(window).touch.phase == TouchPhase::Finished);
+    let touch = view(&window).touch.clone();
+    assert_eq!(touch.counts.touched, touch.plan.as_ref().expect("a plan").reachable, "{:?}", touch.counts);
+    let session = Session::read(touch.session.as_ref().expect("its folder")).expect("readable");
+    let heights: Vec<_> =
+        session.touches.expect("touches").rows().filter_map(|row| row.screen_height_m).collect();
+    assert!(heights.contains(&0.0) && heights.contains(&0.06), "{heights:?}");
 }

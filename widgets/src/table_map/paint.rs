@@ -194,7 +194,8 @@ impl Map {
             })
     }
 
-    /// The scale of the arrows, in a corner where no name stands; `None`: there are no arrows, or no room.
+    /// The scale of the arrows, in the corner with the fewest of them where no name stands; `None`: there are no arrows,
+    /// or no room.
     fn place_for_key(&self, scene: &TableScene, rect: Rect, names: &[Rect]) -> Option<(ArrowKey, Rect)> {
         let both = |error: &BeforeAfter| error.before_m.is_some() || error.after_m.is_some();
         let has_arrows =
@@ -213,7 +214,24 @@ impl Map {
             let taken = names.iter().chain([&torso]).any(|taken| taken.expand(2.0).intersects(*room));
             inside.expand(0.5).contains_rect(*room) && !taken
         };
-        rooms.into_iter().find(is_free).map(|room| (key, room))
+        // Of corners that are as empty the first one.
+        let room = rooms.into_iter().filter(is_free).min_by_key(|room| self.arrows_in(scene, *room))?;
+        Some((key, room))
+    }
+
+    /// How many arrows begin or end in a part of the map.
+    fn arrows_in(&self, scene: &TableScene, part: Rect) -> usize {
+        let ends = |at_m: [f64; 2], vector_m: Option<[f64; 2]>| {
+            let from = self.transform.to_screen(at_m);
+            let along = vector_m.map(|vector_m| self.transform.vector(vector_m) * scene.vector_scale as f32);
+            along.is_some_and(|along| part.contains(from) || part.contains(from + along))
+        };
+        let marks = scene.marks.iter().filter(|mark| ends(mark.at_m, mark.vector_m)).count();
+        let errors = scene.before_after.iter();
+        marks
+            + errors
+                .filter(|error| ends(error.at_m, error.before_m) || ends(error.at_m, error.after_m))
+                .count()
     }
 
     fn torso(&self) {

@@ -35,6 +35,10 @@ const NECK: &str = "The ± of places in the robot's frame is wide because nobody
 const TURNED: &str = "The ± of places in the robot's frame is wide because the eyes were not as warm as when they were \
      calibrated: it holds how far eyes usually turn meanwhile.";
 
+const TURNED_AND_NECK: &str = "The ± of places in the robot's frame is wide because the eyes were not as warm as when they \
+     were calibrated, and nobody measured where the head looks straight ahead, which looking at the hands does: it holds \
+     how far both usually are off.";
+
 /// What the ± leaves out where a calibration of the eyes does not say how well it is known.
 pub(super) const EYES_UNTOLD: &str = "The ± leaves out how well the eyes are calibrated: the calibration file does not say \
      it. A calibration made here does.";
@@ -136,14 +140,25 @@ impl Known {
         match self.mount_of_file {
             true => Some(MOUNT_OF_FILE),
             false if self.model.unmeasured().mount => Some(NO_MOUNT),
-            false if self.model.turned_since(&self.seen).counts() => Some(TURNED),
-            false => self.model.unmeasured().neck.then_some(NECK),
+            false => {
+                of_eyes_and_neck(self.model.turned_since(&self.seen).counts(), self.model.unmeasured().neck)
+            }
         }
     }
 
     /// Where something is; `None`: with the effects of the model there is no such place.
     pub fn place(&self, found: &Located) -> Option<PlaceInRobot> {
         self.model.place(&found.point, &found.covariance_m2, &self.posture, &self.seen)
+    }
+}
+
+/// Where the mount was measured: what of the eyes that have turned since and of the neck was not.
+fn of_eyes_and_neck(turned: bool, neck: bool) -> Option<&'static str> {
+    match (turned, neck) {
+        (true, true) => Some(TURNED_AND_NECK),
+        (true, false) => Some(TURNED),
+        (false, true) => Some(NECK),
+        (false, false) => None,
     }
 }
 
@@ -159,6 +174,15 @@ mod tests {
     use plumbline_model::robot::default_rig;
 
     use super::*;
+
+    #[test]
+    fn cold_eyes_and_a_neck_that_nobody_measured_are_named_together() {
+        let said = |turned, neck| of_eyes_and_neck(turned, neck).unwrap_or_default();
+        for (turned, neck) in [(true, true), (true, false), (false, true), (false, false)] {
+            assert_eq!(said(turned, neck).contains("not as warm"), turned, "{}", said(turned, neck));
+            assert_eq!(said(turned, neck).contains("straight ahead"), neck, "{}", said(turned, neck));
+        }
+    }
 
     #[test]
     fn a_mount_in_a_rig_file_is_told_from_the_described_one() {
