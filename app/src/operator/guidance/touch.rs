@@ -131,11 +131,16 @@ pub fn start_label(plan: &PlanView) -> String {
 
 fn paused(touch: &TouchView, why: Option<&str>) -> Guidance {
     let done = done_of(touch.counts);
-    let next = done + 1;
+    // All may be done, and only the screen be left to be put back.
+    let go_on = if done < wanted(touch.counts) {
+        format!("Go on with touch {}", done + 1)
+    } else {
+        "Go on".to_owned()
+    };
     let why = why.map_or_else(String::new, |why| format!(" {}.", capitalized(why.trim_end_matches('.'))));
     let guidance =
         say(format!("Paused after {done} of {}; all touches are on disk.{why}", wanted(touch.counts)))
-            .then(format!("Go on with touch {next}"), Action::Touch(TouchAction::Resume));
+            .then(go_on, Action::Touch(TouchAction::Resume));
     if why.is_empty() { guidance } else { guidance.warn() }
 }
 

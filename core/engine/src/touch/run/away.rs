@@ -30,23 +30,23 @@ impl Run {
 
     /// The run is over, even where the screen still stands on its block or the weight still hangs at the hand.
     pub(super) fn leave_it_so(&mut self, now: &Now<'_>, context: &mut Context<'_>) {
-        let [height_m, mass_kg] = self.progress.prepared;
-        let mut left = vec![];
-        if height_m > 0.0 {
-            left.push(format!(
-                "put the screen back on the table (it stands {:.0} mm higher)",
-                height_m * 1e3
-            ));
-        }
-        if mass_kg > 0.0 {
-            left.push(format!("take the {:.0} g off the hand", mass_kg * 1e3));
-        }
-        if !left.is_empty() {
-            let text =
-                format!("Before anything moves: {}. From now on it is taken to be so.", left.join(" and "));
+        if let Some(left) = self.left_to_put_back() {
+            let text = format!("Before anything moves: {left}. From now on it is taken to be so.");
             context.notices.add(NoticeLevel::Warning, text);
+            self.progress.prepared = AS_IT_LIES;
+            self.tell_twin(now.robot, context);
         }
         self.finish(now, context);
+    }
+
+    /// What somebody has to do until everything is as it lay before the run; `None`: it is.
+    pub fn left_to_put_back(&self) -> Option<String> {
+        let [height_m, mass_kg] = self.progress.prepared;
+        let screen = (height_m > 0.0)
+            .then(|| format!("put the screen back on the table (it stands {:.0} mm higher)", height_m * 1e3));
+        let weight = (mass_kg > 0.0).then(|| format!("take the {:.0} g off the hand", mass_kg * 1e3));
+        let left: Vec<String> = screen.into_iter().chain(weight).collect();
+        (!left.is_empty()).then(|| left.join(" and "))
     }
 
     /// The block and the weight that a touch needs (`number`; 0: all are done) are asked for once the arm is away.

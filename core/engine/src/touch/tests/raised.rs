@@ -157,6 +157,32 @@ fn a_run_that_is_ended_early_asks_for_the_screen_back_and_no_more_than_once() {
         notice.level == NoticeLevel::Warning && notice.text.contains("put the screen back on the table")
     });
     assert!(warned);
+    // From then on it is taken to lie as it lay: touched once more on the block, it has to be put there again.
+    desk.apply(TouchCommand::Redo { number: 3 });
+    desk.apply(TouchCommand::Resume);
+    assert_eq!(waits_for(&desk), Some((BLOCK_M, 0.0)));
+}
+
+#[test]
+fn whoever_closes_a_run_on_a_block_is_told_that_the_screen_still_stands_there() {
+    let folder = folder();
+    let mut desk = Desk::new(folder.path());
+    touched_as_it_lies(&mut desk);
+    let away = desk.withdrawal().expect("away");
+    desk.withdraw(&away);
+    desk.apply(TouchCommand::Close);
+    assert!(!desk.said().contains("higher"), "as it lay: {}", desk.said());
+    let session = desk.view().unfinished[0].session.clone();
+    desk.apply(TouchCommand::Open { session: session.clone() });
+    desk.apply(TouchCommand::Resume);
+    desk.apply(done(BLOCK_M));
+    desk.apply(TouchCommand::Close);
+    assert!(desk.said().contains("stands 60 mm higher"), "{}", desk.said());
+    // Opened again it goes on as it stands.
+    desk.apply(TouchCommand::Open { session });
+    desk.apply(TouchCommand::Resume);
+    let order = desk.order().expect("nothing has to be prepared");
+    assert!(above_glass_m(order.lower.last().expect("a way down")) > BLOCK_M - 0.02);
 }
 
 #[test]

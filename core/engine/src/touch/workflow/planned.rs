@@ -15,6 +15,7 @@ use super::super::store;
 use super::super::view::ContactSource;
 use super::super::work::{Context, TouchWork};
 use super::{TouchAround, TouchWorkflow, source};
+use crate::ground::notice::NoticeLevel;
 use crate::robot::RobotControl;
 
 impl TouchWorkflow {
@@ -137,6 +138,12 @@ impl TouchWorkflow {
             context.control(RobotControl::AbandonTouch);
         }
         if run.is_active() && !run.progress.finished {
+            if let Some(left) = run.left_to_put_back() {
+                let text = format!(
+                    "Before anything else moves: {left}, or open the run again, which goes on as it stands."
+                );
+                context.notices.add(NoticeLevel::Warning, text);
+            }
             self.runs.unfinished.insert(0, store::unfinished(&run.session, &run.progress));
         }
         self.last_session = Some(run.session);
