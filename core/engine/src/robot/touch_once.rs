@@ -122,6 +122,9 @@ impl Worker {
         if self.touching.is_busy() {
             return Err(self.touching.busy().into());
         }
+        if self.is_led() {
+            return Err(self.leading.busy().into());
+        }
         self.arm()?;
         if self.switches.stop.is_pressed() {
             return Err(Interrupted::StopIsPressed);

@@ -85,6 +85,12 @@ pub enum Refusal {
     /// Everything is done.
     #[error("All touches are done, so there is none to skip.")]
     NothingToSkip,
+    /// Nobody reaches under an arm that moves.
+    #[error("An arm moves. Wait until it stands, then put the screen on its block.")]
+    ArmMoves,
+    /// It may be over the screen.
+    #[error("It is not known where the arm is that touches. Wait until its joints are heard, then go on.")]
+    ArmUnknown,
     /// The screen would meet it.
     #[error(
         "{0}: the hand is over the screen, no higher than the glass would be on its block, or nearly so. Bring it home (Robot) before the screen is raised."

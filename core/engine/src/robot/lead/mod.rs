@@ -66,10 +66,8 @@ impl Leading {
         use RobotCommand::{Jog, Preview, RunPreview, Scan};
         let moves = match control {
             RobotControl::Robot(command) => matches!(command, Preview(_) | RunPreview | Jog(_) | Scan),
-            RobotControl::TurnHead { .. }
-            | RobotControl::Touch(_)
-            | RobotControl::Withdraw(_)
-            | RobotControl::Lead(_) => true,
+            // Orders of a run of touches are answered to the run.
+            RobotControl::TurnHead { .. } | RobotControl::Lead(_) => true,
             _ => false,
         };
         moves && self.led.is_some()

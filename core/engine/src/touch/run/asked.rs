@@ -38,6 +38,9 @@ impl Run {
     /// A sentence, when there is none.
     pub fn skip(&mut self, context: &mut Context<'_>) -> Result<(), Refusal> {
         if let Some(touch) = &mut self.touch {
+            if touch.number.is_none() {
+                return Err(Refusal::NothingToSkip);
+            }
             touch.at_end = AtEnd::Skip;
             context.control(RobotControl::AbandonTouch);
             return Ok(());
@@ -45,10 +48,17 @@ impl Run {
         let next = self.next().filter(|_| self.phase != Phase::Finished);
         let number = next.map(|aim| aim.touch.number).ok_or(Refusal::NothingToSkip)?;
         self.end(number, Ended::Skipped);
+        // The arm may have been moved while it waited.
+        self.is_away = false;
         if let Phase::Preparing(_) = self.phase {
             self.phase = Phase::Working;
         }
         Ok(())
+    }
+
+    /// The run goes on to its plan's end, although it was to end early.
+    pub fn ends_no_more(&mut self) {
+        self.ends = false;
     }
 
     /// Goes on by itself from now on.

@@ -3,13 +3,14 @@
 
 use std::sync::Arc;
 
-use plumbline_model::robot::Rig;
+use plumbline_model::robot::{Arm, Rig};
 use plumbline_model::session::Touchscreen;
 
 use super::going::{next_order, speed};
 use super::{AtEnd, Now, Phase, Run, Task, UnderWay};
 use crate::ground::notice::NoticeLevel;
 use crate::motion::{NoWay, TouchPace};
+use crate::robot::view::MotionState;
 use crate::robot::{RobotControl, TouchStage, WithdrawOrder};
 use crate::touch::over::{TO_REACH, arm_in, is_away};
 use crate::touch::refusal::Refusal;
@@ -22,8 +23,12 @@ impl Run {
     /// All is done, or shall be: the screen is put back and the weight taken off before the run is over, for from then
     /// on the screen is taken to lie where it lay.
     pub(super) fn put_back(&mut self, now: &Now<'_>, context: &mut Context<'_>) {
-        if self.progress.prepared == AS_IT_LIES || now.trouble.is_some() {
-            return self.leave_it_so(now, context);
+        if self.progress.prepared == AS_IT_LIES {
+            return self.finish(now, context);
+        }
+        if let Some(trouble) = now.trouble {
+            self.phase = Phase::Paused(Some(trouble.to_string()));
+            return;
         }
         self.prepare(AS_IT_LIES, 0, now, context);
     }
@@ -59,7 +64,12 @@ impl Run {
     ) {
         let highest = now.screen.raised(wanted[0].max(self.progress.prepared[0]));
         if self.is_away || self.is_clear_of(&highest, now) {
-            self.phase = Phase::Preparing(wanted);
+            // The arm that touches is away; the other one is nobody's to move but the operator's.
+            let other = arm_in(now.rig, &highest, now.robot).filter(|_| !self.is_away);
+            self.phase = match other {
+                Some(arm) => Phase::Paused(Some(Refusal::HandInScreen(arm.title.clone()).to_string())),
+                None => Phase::Preparing(wanted),
+            };
             return;
         }
         let Some(from) = now.robot.measured.clone() else {
@@ -81,11 +91,20 @@ impl Run {
         self.task = Some((context.start(TouchWork::Away(request)), Task::Away));
     }
 
+    /// The arm that touches.
+    fn arm<'a>(&self, now: &Now<'a>) -> Option<&'a Arm> {
+        let tip = self.plan.options.finger.tip();
+        now.rig.arms.iter().find(|arm| arm.tips.iter().any(|known| known.link == tip))
+    }
+
+    /// Whether it is known where the arm that touches is.
+    fn is_known(&self, now: &Now<'_>) -> bool {
+        self.arm(now).is_none_or(|arm| now.robot.known(&arm.joints).is_some())
+    }
+
     /// Whether the arm that touches has no tip on this screen or near it.
     fn is_clear_of(&self, screen: &Touchscreen, now: &Now<'_>) -> bool {
-        let tip = self.plan.options.finger.tip();
-        let arm = now.rig.arms.iter().find(|arm| arm.tips.iter().any(|known| known.link == tip));
-        let Some(arm) = arm else { return true };
+        let Some(arm) = self.arm(now) else { return true };
         now.robot.known(&arm.joints).is_some_and(|posture| is_away(now.rig, arm, screen, posture, TO_REACH))
     }
 
@@ -128,7 +147,11 @@ impl Run {
         if !to_m.is_finite() || to_m <= self.progress.prepared[0] {
             return Ok(());
         }
+        if matches!(now.robot.motion, MotionState::Moving { .. }) {
+            return Err(Refusal::ArmMoves);
+        }
         match arm_in(now.rig, &now.screen.raised(to_m), now.robot) {
+            _ if now.robot.connection.is_connected() && !self.is_known(now) => Err(Refusal::ArmUnknown),
             Some(arm) => Err(Refusal::HandInScreen(arm.title.clone())),
             None => Ok(()),
         }
@@ -140,7 +163,7 @@ impl Run {
         if is_put_back || self.next().is_none() || now.trouble.is_some() {
             return self.leave_it_so(now, context);
         }
-        (self.ends, self.pause, self.phase) = (true, false, Phase::Working);
+        (self.ends, self.pause, self.is_away, self.phase) = (true, false, false, Phase::Working);
         self.go_on(now, context);
     }
 }

@@ -148,7 +148,10 @@ impl Run {
     /// program ended between two of its files.
     pub fn opened(session: PathBuf, stored: Stored) -> Self {
         let Stored { plan, progress, screen, joints } = stored;
+        // The arm may still hover where the newest touch left it.
+        let newest = progress.records.last().and_then(|record| plan.aim(record.number));
         Self {
+            beside_m: newest.map_or_else(Vector3::zeros, |aim| aim.wanted().beside_m()),
             end_on_disk: progress.finished,
             session,
             plan: Arc::new(plan),
@@ -168,7 +171,6 @@ impl Run {
             held: 0,
             contacts: vec![],
             planner: None,
-            beside_m: Vector3::zeros(),
             is_away: false,
             ends: false,
             ended: false,

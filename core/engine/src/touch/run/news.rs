@@ -30,6 +30,9 @@ impl Run {
         let contact = match news.state {
             TouchRun::Away => {
                 self.is_away = true;
+                if let (AtEnd::Skip, Some(number)) = (at_end, number) {
+                    self.end(number, Ended::Skipped);
+                }
                 None
             }
             state => self.touch_ended(state, number, at_end, context),

@@ -5,6 +5,7 @@ use plumbline_model::touch_plan::{Pattern, PlanOptions};
 
 use super::{folder, paused};
 use crate::ground::notice::NoticeLevel;
+use crate::robot::view::MotionState;
 use crate::robot::{TouchOrder, TouchRun, WithdrawOrder};
 use crate::touch::command::TouchCommand;
 use crate::touch::testing::{Desk, grid, rig};
@@ -199,4 +200,80 @@ fn where_no_way_leads_home_it_is_said_what_to_do() {
     assert!(desk.withdrawal().is_none());
     let why = paused(&desk);
     assert!(why.contains("not a number") && why.contains("Bring it home"), "{why}");
+}
+
+#[test]
+fn a_run_that_is_stopped_at_its_end_on_a_block_pauses_and_is_not_over() {
+    let folder = folder();
+    let mut desk = Desk::new(folder.path());
+    touched_as_it_lies(&mut desk);
+    let away = desk.withdrawal().expect("away");
+    desk.withdraw(&away);
+    desk.apply(done(BLOCK_M));
+    let order = desk.order().expect("on the block");
+    desk.touch(&order);
+    let order = desk.order().expect("the last one");
+    desk.robot.measured = order.lower.first().cloned();
+    desk.robot.stopped = true;
+    desk.touch(&order);
+    assert!(paused(&desk).contains("STOP"), "{}", paused(&desk));
+    let raised = desk.workflow.screen().expect("it still stands on its block");
+    assert!(*raised == rig().touchscreen.raised(BLOCK_M));
+    desk.robot.stopped = false;
+    desk.apply(TouchCommand::Resume);
+    assert_eq!(desk.withdrawal().expect("then it goes away").number, 0);
+}
+
+#[test]
+fn a_touch_that_is_to_be_made_again_is_made_before_a_run_that_was_to_end() {
+    let folder = folder();
+    let mut desk = Desk::new(folder.path());
+    touched_as_it_lies(&mut desk);
+    let away = desk.withdrawal().expect("away");
+    desk.withdraw(&away);
+    desk.apply(done(BLOCK_M));
+    let order = desk.order().expect("on the block");
+    desk.touch(&order);
+    let second = desk.order().expect("the last one");
+    desk.robot.measured = second.lower.first().cloned();
+    desk.apply(TouchCommand::Finish);
+    desk.say(&second, TouchRun::Missed("broken off".to_owned()));
+    let away = desk.withdrawal().expect("away");
+    desk.withdraw(&away);
+    desk.apply(TouchCommand::Redo { number: order.number });
+    desk.apply(TouchCommand::Resume);
+    desk.touch_all();
+    if waits_for(&desk).is_some() {
+        desk.apply(done(0.0));
+    }
+    assert_eq!(desk.view().touches[order.number - 1].outcome, TouchOutcome::Touched);
+}
+
+#[test]
+fn an_arm_that_was_moved_back_while_it_waited_goes_away_again() {
+    let folder = folder();
+    let mut desk = Desk::new(folder.path());
+    let hovers = touched_as_it_lies(&mut desk)[0].clone();
+    let away = desk.withdrawal().expect("away");
+    desk.withdraw(&away);
+    desk.robot.measured = Some(hovers);
+    desk.apply(TouchCommand::Skip);
+    assert!(desk.withdrawal().is_some(), "the next touch needs the block, too");
+}
+
+#[test]
+fn nobody_is_believed_while_an_arm_moves_or_is_not_known() {
+    let folder = folder();
+    let mut desk = Desk::new(folder.path());
+    touched_as_it_lies(&mut desk);
+    let away = desk.withdrawal().expect("away");
+    desk.withdraw(&away);
+    desk.robot.motion = MotionState::Moving { what: "jogged".to_owned(), fraction: None, remaining: None };
+    desk.apply(done(BLOCK_M));
+    assert!(desk.said().contains("arm moves"), "{}", desk.said());
+    desk.robot.motion = MotionState::Holding { why: None };
+    desk.robot.unknown = [rig().arm("right").expect("NICO's arm").joints[0]].into();
+    desk.apply(done(BLOCK_M));
+    assert!(desk.said().contains("not known where the arm is"), "{}", desk.said());
+    assert_eq!(waits_for(&desk), Some((BLOCK_M, 0.0)));
 }

@@ -178,6 +178,7 @@ fn redo(run: &mut Run, number: usize) -> Result<(), Refusal> {
         return Err(Refusal::BeingTouched(number));
     }
     run.progress.redo(number);
+    run.ends_no_more();
     run.changed();
     if run.phase == Phase::Finished {
         run.phase = Phase::Paused(Some(format!("Target {number} waits to be touched once more.")));
