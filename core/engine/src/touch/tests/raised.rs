@@ -32,6 +32,14 @@ fn touched_as_it_lies(desk: &mut Desk) -> Vec<Posture> {
     lower
 }
 
+/// The first block is touched, the arm is away, and the block is asked for.
+fn asked_for_the_block(desk: &mut Desk) {
+    touched_as_it_lies(desk);
+    let away = desk.withdrawal().expect("away");
+    desk.withdraw(&away);
+    assert_eq!(waits_for(desk), Some((BLOCK_M, 0.0)));
+}
+
 fn waits_for(desk: &Desk) -> Option<(f64, f64)> {
     match desk.view().phase {
         TouchPhase::Waiting { prepare, .. } => prepare,
@@ -140,9 +148,7 @@ fn a_way_home_that_is_interrupted_is_gone_when_the_run_goes_on() {
 fn a_run_that_is_ended_early_asks_for_the_screen_back_and_no_more_than_once() {
     let folder = folder();
     let mut desk = Desk::new(folder.path());
-    touched_as_it_lies(&mut desk);
-    let away = desk.withdrawal().expect("away");
-    desk.withdraw(&away);
+    asked_for_the_block(&mut desk);
     desk.apply(done(BLOCK_M));
     let order: TouchOrder = desk.order().expect("on the block");
     desk.robot.measured = order.lower.first().cloned();
@@ -168,9 +174,7 @@ fn a_run_that_is_ended_early_asks_for_the_screen_back_and_no_more_than_once() {
 fn whoever_closes_a_run_on_a_block_is_told_that_the_screen_still_stands_there() {
     let folder = folder();
     let mut desk = Desk::new(folder.path());
-    touched_as_it_lies(&mut desk);
-    let away = desk.withdrawal().expect("away");
-    desk.withdraw(&away);
+    asked_for_the_block(&mut desk);
     desk.apply(TouchCommand::Close);
     assert!(!desk.said().contains("higher"), "as it lay: {}", desk.said());
     let session = desk.view().unfinished[0].session.clone();
@@ -206,9 +210,7 @@ fn where_no_way_leads_home_it_is_said_what_to_do() {
 fn a_run_that_is_stopped_at_its_end_on_a_block_pauses_and_is_not_over() {
     let folder = folder();
     let mut desk = Desk::new(folder.path());
-    touched_as_it_lies(&mut desk);
-    let away = desk.withdrawal().expect("away");
-    desk.withdraw(&away);
+    asked_for_the_block(&mut desk);
     desk.apply(done(BLOCK_M));
     let order = desk.order().expect("on the block");
     desk.touch(&order);
@@ -228,9 +230,7 @@ fn a_run_that_is_stopped_at_its_end_on_a_block_pauses_and_is_not_over() {
 fn a_touch_that_is_to_be_made_again_is_made_before_a_run_that_was_to_end() {
     let folder = folder();
     let mut desk = Desk::new(folder.path());
-    touched_as_it_lies(&mut desk);
-    let away = desk.withdrawal().expect("away");
-    desk.withdraw(&away);
+    asked_for_the_block(&mut desk);
     desk.apply(done(BLOCK_M));
     let order = desk.order().expect("on the block");
     desk.touch(&order);
@@ -265,9 +265,7 @@ fn an_arm_that_was_moved_back_while_it_waited_goes_away_again() {
 fn nobody_is_believed_while_an_arm_moves_or_is_not_known() {
     let folder = folder();
     let mut desk = Desk::new(folder.path());
-    touched_as_it_lies(&mut desk);
-    let away = desk.withdrawal().expect("away");
-    desk.withdraw(&away);
+    asked_for_the_block(&mut desk);
     desk.robot.motion = MotionState::Moving { what: "jogged".to_owned(), fraction: None, remaining: None };
     desk.apply(done(BLOCK_M));
     assert!(desk.said().contains("arm moves"), "{}", desk.said());
