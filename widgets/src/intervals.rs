@@ -2,7 +2,8 @@
 //! apart and which cannot.
 
 use egui::{
-    Align2, Pos2, Rect, Response, Sense, Shape, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2,
+    Align2, Color32, Pos2, Rect, Response, Sense, Shape, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2,
+    vec2,
 };
 
 use crate::axis;
@@ -10,7 +11,9 @@ use crate::format::Quantity;
 use crate::theme::{self, Role, space};
 
 const ROW: f32 = 34.0;
+/// Least room for names; longer ones get theirs, up to this share of the width.
 const NAME_WIDTH: f32 = 102.0;
+const MOST_NAME_SHARE: f32 = 0.5;
 const FIGURE_WIDTH: f32 = 118.0;
 /// Room for the numbers below.
 const AXIS: f32 = 20.0;
@@ -88,7 +91,7 @@ impl<'a> Intervals<'a> {
         let rows: Vec<(Rect, Response)> =
             (0..self.rows.len()).map(|i| self.row_response(ui, rect, i, &response)).collect();
         if ui.is_rect_visible(rect) {
-            let chart = Chart::new(&self, rect);
+            let chart = Chart::new(&self, rect, self.name_width(ui, rect.width()));
             chart.axis(ui, self.quantity);
             chart.band(ui, self.band.and_then(|row| self.rows.get(row)?.interval));
             for (i, (row_rect, row_response)) in rows.iter().enumerate() {
@@ -111,6 +114,18 @@ impl<'a> Intervals<'a> {
             }
         }
         rows.iter().position(|(_, response)| response.clicked())
+    }
+
+    /// Room in which the longest name and note end before the scale begins.
+    fn name_width(&self, ui: &Ui, width: f32) -> f32 {
+        let (strong, small) = (theme::strong_font(ui), theme::font(ui, &TextStyle::Small));
+        let of = |text: &str, font: &egui::FontId| {
+            ui.painter().layout_no_wrap(text.to_owned(), font.clone(), Color32::PLACEHOLDER).size().x
+        };
+        let longest =
+            self.rows.iter().map(|row| of(&row.name, &strong).max(of(&row.note, &small))).fold(0.0, f32::max);
+        let most = MOST_NAME_SHARE * width;
+        (longest + 2.0 * space::S).min(most).max(NAME_WIDTH)
     }
 
     fn row_response(&self, ui: &Ui, rect: Rect, i: usize, whole: &Response) -> (Rect, Response) {
@@ -144,7 +159,7 @@ struct Chart {
 const SQUEEZED: f64 = 4.0;
 
 impl Chart {
-    fn new(all: &Intervals<'_>, rect: Rect) -> Self {
+    fn new(all: &Intervals<'_>, rect: Rect, name_width: f32) -> Self {
         // What has an interval decides the scale: something far worse would squeeze together what
         // has to be told apart.
         let ends = |with_interval: bool| {
@@ -158,8 +173,8 @@ impl Chart {
         largest = ends(false).filter(|end| *end <= limit).fold(largest, f64::max);
         let on_screen = all.quantity.on_screen(1.0);
         let plot = Rect::from_min_max(
-            pos2(rect.left() + NAME_WIDTH, rect.top() + HEAD),
-            pos2((rect.right() - FIGURE_WIDTH).max(rect.left() + NAME_WIDTH + 40.0), rect.bottom() - AXIS),
+            pos2(rect.left() + name_width, rect.top() + HEAD),
+            pos2((rect.right() - FIGURE_WIDTH).max(rect.left() + name_width + 40.0), rect.bottom() - AXIS),
         );
         Self { plot, end: axis::round_up(largest * on_screen * 1.02) / on_screen }
     }
@@ -266,7 +281,7 @@ mod tests {
         let rows = [row(Some(0.004), Some([0.003, 0.0063])), row(None, None)];
         let levels = [Level { name: "repeats, rms", value: 0.0213, role: Role::Weak }];
         let all = Intervals::new("test", &rows, Quantity::Length).levels(&levels);
-        let chart = Chart::new(&all, Rect::from_min_size(Pos2::ZERO, vec2(600.0, 120.0)));
+        let chart = Chart::new(&all, Rect::from_min_size(Pos2::ZERO, vec2(600.0, 120.0)), NAME_WIDTH);
         assert!((chart.x(0.0) - chart.plot.left()).abs() < 1e-3);
         assert!(chart.x(0.0213) <= chart.plot.right() && chart.end < 0.03);
     }
@@ -275,7 +290,7 @@ mod tests {
     fn what_has_no_interval_does_not_squeeze_the_others() {
         let rows = [row(Some(0.004), Some([0.003, 0.005])), row(Some(0.08), None)];
         let all = Intervals::new("test", &rows, Quantity::Length);
-        let chart = |all| Chart::new(all, Rect::from_min_size(Pos2::ZERO, vec2(600.0, 120.0)));
+        let chart = |all| Chart::new(all, Rect::from_min_size(Pos2::ZERO, vec2(600.0, 120.0)), NAME_WIDTH);
         assert!(chart(&all).end < 0.007);
         let alone = Intervals::new("test", &rows[1..], Quantity::Length);
         assert!(chart(&alone).end >= 0.08);

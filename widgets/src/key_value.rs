@@ -84,10 +84,11 @@ fn show_row(ui: &mut Ui, row: &KeyValue, width: f32) {
     let name = layout(&row.label, tokens.text_weak);
     let value = layout(&row.value, value_color);
     let unit = layout(row.unit, tokens.text_weak);
-    // Where both do not fit beside each other, the name gets a line of its own.
-    let stacked = name.size().x + space::S + value.size().x + UNIT_WIDTH > width;
-    // Words longer than a line of their own go on in the next one, over the room of the unit that they lack.
-    let unit_room = if row.unit.is_empty() && stacked { 0.0 } else { UNIT_WIDTH };
+    // Words that need it go over the room of the unit that they lack; where both do not fit beside each other even so, the
+    // name gets a line of its own, and what is longer than a line goes on in the next one.
+    let beside = name.size().x + space::S + value.size().x;
+    let unit_room = if row.unit.is_empty() && beside + UNIT_WIDTH > width { 0.0 } else { UNIT_WIDTH };
+    let stacked = beside + unit_room > width;
     let value = if stacked && value.size().x > width - unit_room {
         ui.painter().layout(row.value.clone(), font.clone(), value_color, width - unit_room)
     } else {
@@ -110,7 +111,7 @@ fn show_row(ui: &mut Ui, row: &KeyValue, width: f32) {
     let last = if stacked { first + name.size().y } else { first };
     let line = |galley: &egui::Galley, top: f32| top + (ROW_HEIGHT - galley.size().y) / 2.0;
     let value_top = last + (ROW_HEIGHT - unit.size().y) / 2.0;
-    let end = rect.right() - if value.rows.len() > 1 { unit_room } else { UNIT_WIDTH };
+    let end = rect.right() - unit_room;
     let value_left = (end - value.size().x).max(rect.left());
     painter.galley(pos2(rect.left(), line(&name, first)), name, tokens.text_weak);
     painter.galley(pos2(value_left, value_top), value, value_color);

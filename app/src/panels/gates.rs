@@ -9,9 +9,9 @@ pub(crate) fn show(ui: &mut Ui, gates: &[Gate]) {
     let tokens = theme::tokens(ui);
     for gate in gates {
         let (sign, role) = match gate.state {
-            GateState::Open => ("ready", Role::Accepted),
+            GateState::Open => ("ok", Role::Accepted),
             GateState::Doubtful => ("note", Role::Weak),
-            GateState::Shut => ("not ready", Role::Warning),
+            GateState::Shut => ("not ok", Role::Warning),
         };
         ui.label(RichText::new(format!("{}: {sign}", gate.name)).color(role.color(tokens)));
         ui.label(theme::small(ui, gate.text.clone()));

@@ -113,7 +113,7 @@ fn cold_eyes_are_warmed_then_shown_the_board() {
     assert_eq!(label, "Next: show the board at 12 places");
     assert_eq!(sent, [Command::from(EyesCommand::AutoCapture(true)), Command::from(TwinCommand::TourFew)]);
     is_on(&window, "Coverage");
-    assert!(says(&window, "Commissioning 1 of 8: calibrate the eyes"));
+    assert!(says(&window, "Commissioning, 0 of 8 done: calibrate the eyes"));
     assert!(shows(&window, "9 min · 8 touches · 14 views"));
 }
 
@@ -374,7 +374,7 @@ fn stop_leaves_nothing_to_press() {
 #[test]
 fn looking_elsewhere_that_screen_says_its_own() {
     let window = Fake::over(at(CommissionStep::Screen)).window(on(Screen::Robot));
-    assert!(says(&window, "Commissioning 3 of 8: place the screen"));
+    assert!(says(&window, "Commissioning, 2 of 8 done: place the screen"));
     assert!(says(&window, "Drag a joint or choose a pose"));
 }
 

@@ -104,6 +104,12 @@ fn above_the_button_of_a_grasp_that_holds_the_arm_is_not_said_to_move() {
         window.run_steps(2);
         assert!(fake.take_stops() > 0);
     }
+    // Another screen leads back to where it is gone on with; on its own screen it is gone on with.
+    let robot = Arc::new(RobotView { rests_on_the_way: true, ..moving.clone() });
+    let fake = Fake::over(View { robot, ..with(held(true)) });
+    let mut window = fake.window(WindowSettings { screen: Screen::Robot, ..WindowSettings::default() });
+    click(&mut window, "Back to the grasp");
+    assert!(!shows(&window, "Back to the grasp") && fake.take_sent().is_empty());
     // Which joint is not known comes before that it stands.
     let unknown = Arc::from([moving.joints[0].joint]);
     let robot = Arc::new(RobotView { rests_on_the_way: true, unknown, ..moving });

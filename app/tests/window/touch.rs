@@ -61,8 +61,11 @@ fn one_button_leads_through_the_work() {
     let what = "Raise the screen by 30 mm, then go on.".to_owned();
     let reachable = first_plan().plan.expect("planned").reachable;
     let resumed = paused();
+    // Touches that are out of reach have numbers as well: those that were done do not count it.
+    let next = next_number(&resumed);
     let done =
         resumed.counts.touched + resumed.counts.missed + resumed.counts.skipped + resumed.counts.rejected;
+    assert!(next > done + 1);
     for (touch, button, wanted) in [
         (
             idle(),
@@ -81,7 +84,7 @@ fn one_button_leads_through_the_work() {
         ),
         (first_plan(), format!("Touch {reachable} targets"), TouchCommand::Start),
         (running(), "Pause".to_owned(), TouchCommand::Pause),
-        (resumed, format!("Go on with touch {}", done + 1), TouchCommand::Resume),
+        (resumed, format!("Go on with touch {next}"), TouchCommand::Resume),
         (
             after(12, TouchPhase::Waiting { what, prepare }),
             "Done, go on".to_owned(),
@@ -377,6 +380,14 @@ fn pictures_of_touching() {
     let folder = crate::fake::picture_folder();
     let what = "Raise the screen by 30 mm: put the block under it, then go on.".to_owned();
     let waiting = after(12, TouchPhase::Waiting { what, prepare: Some((0.03, 0.0)) });
+    let doing = "going home, away from the screen".to_owned();
+    let withdrawing = after(12, TouchPhase::Running { number: next_number(&waiting), doing });
+    let back =
+        "Put the screen back on the table and take the weight off the hand, then say that it is done; nothing moves any more."
+            .to_owned();
+    let putting_back = after(200, TouchPhase::Waiting { what: back, prepare: Some((0.0, 0.0)) });
+    let why = "Right hand over the screen. Bring it home (Robot), then go on.".to_owned();
+    let paused = after(12, TouchPhase::Paused { why: Some(why) });
     let placed = TouchView {
         placement_proposal: Some(Arc::new(placement())),
         placement: Some(Arc::new(placement())),
@@ -388,6 +399,9 @@ fn pictures_of_touching() {
             ("planned", first_plan()),
             ("running", running()),
             ("waiting", waiting.clone()),
+            ("withdrawing", withdrawing.clone()),
+            ("putting-back", putting_back.clone()),
+            ("paused", paused.clone()),
             ("finished", placed.clone()),
         ] {
             let fake = Fake::over(with_touch(touch));

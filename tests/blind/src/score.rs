@@ -70,6 +70,8 @@ pub struct Score {
     pub singles_by_kind: BTreeMap<String, Naming>,
     /// Pairs and triples, by plan: all classes found.
     pub several: BTreeMap<(String, String), Naming>,
+    /// Those of them in which each effect has 1 sigma and more.
+    pub several_visible: BTreeMap<(String, String), Naming>,
     /// Nameless effects that were said to be so, by plan.
     pub nameless: BTreeMap<String, Share>,
     /// The same by kind.
@@ -124,6 +126,9 @@ impl Score {
             Family::Single => self.count_single(answer, verdict, &plan),
             Family::Pair | Family::Triple => {
                 let key = (crate::words::word(answer.family), plan);
+                if answer.hidden.iter().all(|hidden| hidden.size_sigmas >= VISIBLE) {
+                    self.several_visible.entry(key.clone()).or_default().count(&answer.hidden, verdict);
+                }
                 self.several.entry(key).or_default().count(&answer.hidden, verdict);
                 self.closures.extend(verdict.closure());
             }
@@ -447,6 +452,21 @@ mod tests {
         assert_eq!(right(&[("image-shift", "right", 0.6, class)]), 0);
         assert_eq!(right(&[("image-shift", "right", 0.6, &["image-shift@right"])]), 1, "a trace of its own");
         assert_eq!(right(&[("eye-yaw", "right", 0.9, &[]), ("image-shift", "right", 0.6, class)]), 2, "both");
+    }
+
+    #[test]
+    fn pairs_with_an_effect_that_is_hardly_there_count_and_stand_apart() {
+        let mut score = Score::default();
+        for size_sigmas in [2.0, 0.5] {
+            let hidden = [("joint-zero", "r_elbow_y", 2.0), ("link-length", "right_wrist", size_sigmas)];
+            let found: &[(&str, &str, f64, &[&str])] = &[("joint-zero", "r_elbow_y", 0.9, &[])];
+            score.count(&answer(Family::Pair, &hidden, &[]), &verdict("named", found));
+        }
+        let of = |several: &BTreeMap<(String, String), Naming>| {
+            several.values().map(|one| one.class.of).sum::<usize>()
+        };
+        assert_eq!((of(&score.several), of(&score.several_visible)), (2, 1));
+        assert!(crate::table::markdown(&score).contains("– of those with ≥ 1 σ each: pair"));
     }
 
     #[test]

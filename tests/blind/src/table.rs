@@ -26,6 +26,10 @@ pub fn markdown(score: &Score) -> String {
     for ((family, plan), naming) in &score.several {
         let wanted = if family == "pair" { "≥ 90 %" } else { "≥ 80 %" };
         line(&format!("{family}, {plan}: all classes found"), wanted, &naming.class);
+        let visible = score.several_visible.get(&(family.clone(), plan.clone())).copied().unwrap_or_default();
+        if visible.class.of < naming.class.of {
+            line(&format!("– of those with ≥ 1 σ each: {family}, {plan}"), wanted, &visible.class);
+        }
     }
     for (plan, said) in &score.nameless {
         line(&format!("not in the library, {plan}: said so"), "≥ 95 %", said);

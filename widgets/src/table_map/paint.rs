@@ -101,6 +101,21 @@ pub(super) struct Map {
     font: FontId,
 }
 
+/// Whether a straight line from one point to another goes through a part of the map.
+fn is_crossed(part: Rect, from: Pos2, to: Pos2) -> bool {
+    // Shares of the way at which it is between two opposite edges (Liang and Barsky 1984).
+    let between = |start: f32, way: f32, low: f32, high: f32| {
+        if way == 0.0 {
+            return if (low..=high).contains(&start) { (0.0, 1.0) } else { (1.0, 0.0) };
+        }
+        let ends = [(low - start) / way, (high - start) / way];
+        (ends[0].min(ends[1]), ends[0].max(ends[1]))
+    };
+    let (in_x, out_x) = between(from.x, to.x - from.x, part.left(), part.right());
+    let (in_y, out_y) = between(from.y, to.y - from.y, part.top(), part.bottom());
+    in_x.max(in_y).max(0.0) <= out_x.min(out_y).min(1.0)
+}
+
 impl Map {
     /// Round lines with their numbers left of and below the map.
     fn grid(&self, outside: &Painter, rect: Rect) {
@@ -219,12 +234,12 @@ impl Map {
         Some((key, room))
     }
 
-    /// How many arrows begin or end in a part of the map.
+    /// How many arrows go through a part of the map.
     fn arrows_in(&self, scene: &TableScene, part: Rect) -> usize {
         let ends = |at_m: [f64; 2], vector_m: Option<[f64; 2]>| {
             let from = self.transform.to_screen(at_m);
             let along = vector_m.map(|vector_m| self.transform.vector(vector_m) * scene.vector_scale as f32);
-            along.is_some_and(|along| part.contains(from) || part.contains(from + along))
+            along.is_some_and(|along| is_crossed(part, from, from + along))
         };
         let marks = scene.marks.iter().filter(|mark| ends(mark.at_m, mark.vector_m)).count();
         let errors = scene.before_after.iter();
@@ -347,5 +362,20 @@ impl Map {
 
     fn word(&self, at: Pos2, anchor: Align2, text: &str, color: Color32) -> Rect {
         self.painter.text(at, anchor, text, self.font.clone(), color)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_arrow_crosses_what_it_ends_in_and_what_it_only_goes_through() {
+        let part = Rect::from_min_max(pos2(10.0, 10.0), pos2(20.0, 14.0));
+        let crosses = |from: [f32; 2], to: [f32; 2]| is_crossed(part, from.into(), to.into());
+        assert!(crosses([0.0, 12.0], [11.0, 12.0]) && crosses([15.0, 11.0], [15.0, 40.0]));
+        assert!(crosses([15.0, 0.0], [16.0, 40.0]) && crosses([12.0, 12.0], [12.0, 12.0]));
+        assert!(!crosses([15.0, 0.0], [15.0, 9.0]) && !crosses([0.0, 0.0], [9.0, 40.0]));
+        assert!(!crosses([5.0, 5.0], [5.0, 5.0]));
     }
 }

@@ -87,7 +87,7 @@ fn moving(robot: &RobotView) -> Option<Guidance> {
 pub(super) fn robot(view: &View) -> Guidance {
     let robot = &view.robot;
     if let Some(guidance) = trouble(robot) {
-        return guidance;
+        return with_way_back(guidance, view);
     }
     if let Some(preview) = &robot.preview {
         let guidance =
@@ -122,7 +122,17 @@ pub(super) fn under_way(view: &View) -> Option<Guidance> {
     if !robot.connection.is_connected() || view.mount.step == StepState::Running {
         return None;
     }
-    moving(robot).or_else(|| shown_move(robot))
+    moving(robot).map(|guidance| with_way_back(guidance, view)).or_else(|| shown_move(robot))
+}
+
+/// Where a grasp holds in the middle, it is gone on with, or ended, on its own screen.
+fn with_way_back(guidance: Guidance, view: &View) -> Guidance {
+    let is_paused = view.robot.rests_on_the_way && view.grasp.phase.is_paused();
+    if is_paused && guidance.next.is_none() {
+        guidance.then("Back to the grasp", Action::Go(Screen::Grasp))
+    } else {
+        guidance
+    }
 }
 
 pub(super) fn mount(view: &View) -> Guidance {

@@ -131,17 +131,20 @@ pub fn start_label(plan: &PlanView) -> String {
 
 fn paused(touch: &TouchView, why: Option<&str>) -> Guidance {
     let done = done_of(touch.counts);
-    // All may be done, and only the screen be left to be put back.
-    let go_on = if done < wanted(touch.counts) {
-        format!("Go on with touch {}", done + 1)
-    } else {
-        "Go on".to_owned()
-    };
     let why = why.map_or_else(String::new, |why| format!(" {}.", capitalized(why.trim_end_matches('.'))));
     let guidance =
         say(format!("Paused after {done} of {}; all touches are on disk.{why}", wanted(touch.counts)))
-            .then(go_on, Action::Touch(TouchAction::Resume));
+            .then(go_on(touch), Action::Touch(TouchAction::Resume));
     if why.is_empty() { guidance } else { guidance.warn() }
+}
+
+/// What resuming does: "Go on with touch 15", by its number in the plan, as everywhere.
+pub fn go_on(touch: &TouchView) -> String {
+    match touch.touches.iter().find(|one| one.outcome == TouchOutcome::Waiting) {
+        Some(next) => format!("Go on with touch {}", next.number),
+        // All may be done, and only the screen be left to be put back.
+        None => "Go on".to_owned(),
+    }
 }
 
 /// Touches that can be done.

@@ -60,11 +60,15 @@ pub fn recording_to_export(view: &View) -> Option<PathBuf> {
     open.or_else(|| view.recording.last.as_ref().map(|last| last.file()))
 }
 
-/// "14:02", or the day before it when that is not today.
+/// "14:02", with the day before it when that is not today, and its year when that is not this one.
 pub fn clock(at: jiff::Timestamp) -> String {
     let zone = jiff::tz::TimeZone::system();
     let (at, now) = (at.to_zoned(zone.clone()), jiff::Timestamp::now().to_zoned(zone));
-    let format = if at.date() == now.date() { "%H:%M" } else { "%-d %b %Y, %H:%M" };
+    let format = match () {
+        () if at.date() == now.date() => "%H:%M",
+        () if at.year() == now.year() => "%-d %b, %H:%M",
+        () => "%-d %b %Y, %H:%M",
+    };
     at.strftime(format).to_string()
 }
 

@@ -119,7 +119,7 @@ fn gates(ui: &mut Ui, grasp: &GraspView) {
         };
     }
     for gate in grasp.gates.iter().filter(|gate| gate.state == GateState::Shut && gate.name != FULL_HAND) {
-        let text = format!("{}, not ready: {}", gate.name, gate.text);
+        let text = format!("{}, not ok: {}", gate.name, gate.text);
         ui.label(RichText::new(text).color(Role::Warning.color(tokens)));
     }
 }

@@ -86,12 +86,12 @@ fn row(ui: &mut Ui, cx: &mut PanelContext<'_>, seen: &HeadViewSummary) {
     });
 }
 
-/// The residual, or why the view is left out.
+/// The residual, or that the view is left out, with why where it is pointed at.
 fn fit(ui: &mut Ui, left_out: Option<&str>, rms_px: Option<f64>) {
     let tokens = theme::tokens(ui);
     match (left_out, rms_px) {
         (Some(why), _) => {
-            let text = egui::RichText::new(why).color(Role::Warning.color(tokens));
+            let text = egui::RichText::new("left out").color(Role::Warning.color(tokens));
             ui.add(egui::Label::new(text).truncate()).on_hover_text(why);
         }
         (None, Some(rms)) => {

@@ -3,7 +3,7 @@
 use egui::{Slider, Ui};
 use plumbline_engine::view::{ClassRates, DetectView, DetectorFacts};
 use plumbline_engine::{Command, DetectCommand};
-use plumbline_widgets::theme::{self, group_heading, space};
+use plumbline_widgets::theme::{self, class_words, group_heading, space};
 use plumbline_widgets::{class_color, format};
 
 use super::state::ObjectsPanels;
@@ -23,7 +23,7 @@ pub fn thresholds(ui: &mut Ui, detect: &DetectView, panels: &mut ObjectsPanels, 
     for (_, name) in facts.names.iter() {
         ui.horizontal(|ui| {
             let own = settings.class_confidence.get(name);
-            if let Some(confidence) = slider(ui, name, settings.confidence_of(name)) {
+            if let Some(confidence) = slider(ui, class_words(name), settings.confidence_of(name)) {
                 let class = name.to_owned();
                 outbox.send(DetectCommand::ClassConfidence { class, confidence: Some(confidence) });
             }
@@ -55,12 +55,17 @@ pub fn filter(ui: &mut Ui, detect: &DetectView, facts: &DetectorFacts, outbox: &
                 if shown { class_color(name, class.0) } else { tokens.line },
             );
             let ink = if shown { tokens.text_strong } else { tokens.text_weak };
-            let text = egui::RichText::new(name).text_style(egui::TextStyle::Small).color(ink);
+            let text = egui::RichText::new(class_words(name)).text_style(egui::TextStyle::Small).color(ink);
             let text = if shown { text } else { text.strikethrough() };
             let fill = if shown { tokens.selected } else { tokens.panel };
             let chip = ui.add(egui::Button::new(text).fill(fill).stroke(stroke));
             chip.widget_info(|| {
-                egui::WidgetInfo::selected(egui::Role::CheckBox, true, shown, format!("Show {name}"))
+                egui::WidgetInfo::selected(
+                    egui::Role::CheckBox,
+                    true,
+                    shown,
+                    format!("Show {}", class_words(name)),
+                )
             });
             if chip.clicked() {
                 outbox.send(DetectCommand::Show { class: name.to_owned(), shown: !shown });

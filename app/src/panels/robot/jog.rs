@@ -36,7 +36,9 @@ fn contents(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         .enabled_elsewhere(pad.is_some())
         .show(ui, &mut cx.state.robot.jog_speed);
     // Below: in a small window the pad itself has to be in sight.
-    ui.label(theme::small(ui, format!("Moved by the robot {}.", view.robot.model)));
+    if !view.robot.model.is_empty() {
+        ui.label(theme::small(ui, format!("Moved by the robot {}.", view.robot.model)));
+    }
     gamepad(ui, cx.state.robot.gamepad.as_ref());
     let by_hand = shown.intent.map(|intent| JogRates {
         velocity_m_s: intent.velocity_m_s.into(),

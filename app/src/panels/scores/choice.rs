@@ -1,8 +1,8 @@
 //! Which detectors are judged on which data set.
 
-use egui::{Label, ScrollArea, Ui};
+use egui::{Button, Label, ScrollArea, Ui};
 use plumbline_engine::{ScoresCommand, SetPart};
-use plumbline_widgets::buttons::{accent_button, choice};
+use plumbline_widgets::buttons::choice;
 use plumbline_widgets::format;
 use plumbline_widgets::progress::progress_bar;
 use plumbline_widgets::theme::{self, space};
@@ -97,7 +97,7 @@ fn start(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         return;
     }
     let why = ScoresAction::Evaluate.refusal(cx.view);
-    let button = ui.add_enabled(why.is_none(), accent_button(ui, "Evaluate"));
+    let button = ui.add_enabled(why.is_none(), Button::new("Evaluate"));
     if button.on_disabled_hover_text(why.clone().unwrap_or_default()).clicked() {
         cx.outbox.act(Action::Scores(ScoresAction::Evaluate));
     }

@@ -3,6 +3,7 @@
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{Align, Button, Layout, RichText, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, vec2};
 use plumbline_engine::view::{EntryKind, Figure, TimelineEntry};
+use plumbline_engine::{Command, View};
 use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::theme::{self, Role, space};
 
@@ -45,8 +46,12 @@ fn row(ui: &mut Ui, cx: &mut PanelContext<'_>, entry: &TimelineEntry, ends: (boo
         ui.set_height(ROW_HEIGHT);
         dot(ui, cx, entry, ends);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let layout = Layout::right_to_left(Align::Center);
-            ui.allocate_ui_with_layout(vec2(BUTTON, ROW_HEIGHT), layout, |ui| undo_button(ui, cx, entry));
+            if let Some(change) = change(cx.view, entry) {
+                let layout = Layout::right_to_left(Align::Center);
+                ui.allocate_ui_with_layout(vec2(BUTTON, ROW_HEIGHT), layout, |ui| {
+                    change_button(ui, cx, entry, change);
+                });
+            }
             text(ui, cx, entry);
         });
     });
@@ -99,10 +104,12 @@ fn text(ui: &mut Ui, cx: &mut PanelContext<'_>, entry: &TimelineEntry) {
     let color = if is_better(entry) { Role::Accepted.color(tokens) } else { tokens.text_strong };
     // The errors keep their room; when and of what gives way.
     let errors = line(errors, TextStyle::Small, color, whole);
-    // What says no more than the title below goes first.
-    let heading = format!("{} · {}", clock(entry.at), entry.subject.name());
+    // Of what it is says the title below as well: it goes where there is no room for both.
+    let when = clock(entry.at);
     let room = whole - errors.size().x - space::M;
-    let heading = line(heading, TextStyle::Small, tokens.text_weak, room);
+    let heading = |text: String, width| line(text, TextStyle::Small, tokens.text_weak, width);
+    let both = heading(format!("{when} · {}", entry.subject.name()), f32::INFINITY);
+    let heading = if both.size().x <= room { both } else { heading(when, room) };
     let beside = at + vec2(heading.size().x + space::M, 0.0);
     ui.painter().galley(at, heading, tokens.text);
     ui.painter().galley(beside, errors, tokens.text);
@@ -119,17 +126,24 @@ fn is_better(entry: &TimelineEntry) -> bool {
     both.is_some_and(|(before, after): (Figure, Figure)| after.is_better_than(before))
 }
 
-fn undo_button(ui: &mut Ui, cx: &mut PanelContext<'_>, entry: &TimelineEntry) {
-    let (command, label, help) = match (take_back(cx.view, entry), use_again(cx.view, entry)) {
-        (Some(undo), _) => {
-            let help = capitalized(&undo.help());
-            (undo.command, "Undo", help)
-        }
-        (None, Some(command)) => {
-            (command, "Use again", "Puts this in use again. Nothing is deleted.".to_owned())
-        }
-        (None, None) => return,
-    };
+/// What can be done about an entry.
+struct Change {
+    command: Command,
+    label: &'static str,
+    help: String,
+}
+
+/// `None`: it was only measured, or something newer stands on it.
+fn change(view: &View, entry: &TimelineEntry) -> Option<Change> {
+    if let Some(undo) = take_back(view, entry) {
+        return Some(Change { help: capitalized(&undo.help()), command: undo.command, label: "Undo" });
+    }
+    let help = "Puts this in use again. Nothing is deleted.".to_owned();
+    use_again(view, entry).map(|command| Change { command, label: "Use again", help })
+}
+
+fn change_button(ui: &mut Ui, cx: &mut PanelContext<'_>, entry: &TimelineEntry, change: Change) {
+    let Change { command, label, help } = change;
     let button = ui.add(Button::new(RichText::new(label).text_style(TextStyle::Small)));
     // Each says which one it is of to whoever does not see the row.
     button.widget_info(|| {

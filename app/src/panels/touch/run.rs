@@ -12,7 +12,7 @@ use plumbline_widgets::theme::{self, Role, space};
 
 use super::parts::error_length_m;
 use super::words;
-use crate::operator::guidance::{check_in_words, is_screen_to_be_decided};
+use crate::operator::guidance::{check_in_words, go_on, is_screen_to_be_decided};
 use crate::operator::words::proof::Proof;
 use crate::operator::{Action, Screen, TouchAction, done_of, is_under_way, wanted};
 use crate::panels::parts::{action_button, warning};
@@ -80,8 +80,7 @@ fn head(ui: &mut Ui, cx: &mut PanelContext<'_>) {
                 }
             }
             ui.horizontal(|ui| {
-                let label = format!("Go on with touch {}", done_of(touch.counts) + 1);
-                action_button(ui, cx, TouchAction::Resume, &label);
+                action_button(ui, cx, TouchAction::Resume, &go_on(touch));
                 action_button(ui, cx, TouchAction::Skip, "Skip");
                 finish_button(ui, cx);
             });

@@ -42,8 +42,8 @@ pub struct GraspAround {
     pub found: Option<Arc<DetectionsView>>,
     /// Whether an experiment makes its attempts.
     pub in_experiment: bool,
-    /// Whether a run of touches goes on by itself.
-    pub is_touching: bool,
+    /// Why a run of touches comes first, and what to do; a sentence.
+    pub touches_first: Option<&'static str>,
 }
 
 impl GraspAround {
@@ -77,7 +77,7 @@ impl GraspAround {
             own_eyes: true,
             found: None,
             in_experiment: false,
-            is_touching: false,
+            touches_first: None,
         }
     }
 }

@@ -21,9 +21,7 @@ pub fn gates(around: &GraspAround, choice: HandChoice, method: Method) -> Vec<Ga
         // A step of a hand needs no method: published ones are refused below.
         let hands = hands.unwrap_or(&[Hand::Left]);
         gates.push(stop(robot));
-        if around.is_touching {
-            gates.push(closed("Run", "A run of touches moves the arm: pause it, or wait until it is over."));
-        }
+        gates.extend(around.touches_first.map(|why| closed("Run", why)));
         gates.push(of_any(hands, |hand| joints(around, hand.name())));
         gates.push(of_any(hands, |hand| load(around, hand.name())));
         gates.push(of_any(hands, |hand| rest(around, hand.name())));
@@ -232,18 +230,18 @@ mod tests {
 
     #[test]
     fn nothing_is_grasped_while_a_run_of_touches_moves_the_arm() {
-        let connected = |is_touching| {
+        let connected = |touches_first| {
             let still = around(0.0, 31.0);
             let connection = Connection::Connected { to: "twin".to_owned(), twin: true };
             let robot = Arc::new(RobotView { connection, ..(*still.robot).clone() });
-            GraspAround { robot, is_touching, ..still }
+            GraspAround { robot, touches_first, ..still }
         };
         let run = |around: &GraspAround| {
             let gates = gates(around, HandChoice::Auto, Method::M5);
             gates.into_iter().find(|gate| gate.name == "Run").map(|gate| gate.state)
         };
-        assert_eq!(run(&connected(true)), Some(GateState::Shut));
-        assert_eq!(run(&connected(false)), None);
+        assert_eq!(run(&connected(Some("A run of touches moves the arm."))), Some(GateState::Shut));
+        assert_eq!(run(&connected(None)), None);
     }
 
     #[test]

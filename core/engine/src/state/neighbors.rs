@@ -300,7 +300,7 @@ impl Neighbors<GraspWorkflow> for State {
             source: source.view().clone(),
             found: detect.found().cloned(),
             in_experiment: trials.of(world).is_under_way(),
-            is_touching: touch.of(world).is_touching(),
+            touches_first: touch.of(world).in_the_way(),
         }
     }
 }

@@ -141,10 +141,9 @@ impl TouchWorkflow {
             Phase::Paused(_) if run.touch.is_some() => running(run),
             Phase::Paused(why) => TouchPhase::Paused { why: why.clone() },
             Phase::Stuck(reason) => TouchPhase::Waiting { what: reason.clone(), prepare: None },
-            Phase::Preparing(wanted) => TouchPhase::Waiting {
-                what: preparation(run.progress.prepared, *wanted),
-                prepare: Some((wanted[0], wanted[1])),
-            },
+            Phase::Preparing(wanted) => {
+                TouchPhase::Waiting { what: preparation(run, *wanted), prepare: Some((wanted[0], wanted[1])) }
+            }
             // What comes next rests on what is on disk.
             Phase::Finished if !run.is_over() => running(run),
             Phase::Finished => TouchPhase::Finished,
@@ -237,7 +236,7 @@ impl TouchWorkflow {
                 format!("Still to do: {}. Go on; the arm moves.", counted(run.left(), "touch"))
             }
             Phase::Stuck(reason) => reason.clone(),
-            Phase::Preparing(wanted) => preparation(run.progress.prepared, *wanted),
+            Phase::Preparing(wanted) => preparation(run, *wanted),
             Phase::Finished if self.placing.is_some() => {
                 "The place of the screen is being measured from the touches.".to_owned()
             }
@@ -293,8 +292,9 @@ fn last(run: &Run) -> usize {
     run.plan.touches.last().map_or(1, |aim| aim.touch.number)
 }
 
-/// What has to be done by hand; a sentence.
-fn preparation([height_m, mass_kg]: [f64; 2], [to_m, to_kg]: [f64; 2]) -> String {
+/// What has to be done by hand, and what comes then; a sentence.
+fn preparation(run: &Run, [to_m, to_kg]: [f64; 2]) -> String {
+    let [height_m, mass_kg] = run.progress.prepared;
     let mut parts = vec![];
     if to_m != height_m {
         parts.push(match to_m {
@@ -308,8 +308,21 @@ fn preparation([height_m, mass_kg]: [f64; 2], [to_m, to_kg]: [f64; 2]) -> String
             _ => format!("fix a weight of {:.0} g at the palm", to_kg * 1e3),
         });
     }
-    crate::ground::text::sentence(&format!(
-        "{}, then say that it is done; the arm goes on",
-        parts.join(" and ")
-    ))
+    if parts.is_empty() {
+        parts.push(still(to_m, to_kg));
+    }
+    let then = if run.next().is_some() { "the arm goes on" } else { "nothing moves any more" };
+    crate::ground::text::sentence(&format!("{}, then say that it is done; {then}", parts.join(" and ")))
+}
+
+/// What has to be looked at by hand after a while in which nobody was asked.
+fn still(height_m: f64, mass_kg: f64) -> String {
+    let screen = format!("the screen stands on its block of {:.0} mm", height_m * 1e3);
+    let weight = format!("the weight of {:.0} g is at the palm", mass_kg * 1e3);
+    let all = match (height_m > 0.0, mass_kg > 0.0) {
+        (true, true) => format!("{screen} and {weight}"),
+        (false, true) => weight,
+        (_, false) => screen,
+    };
+    format!("see that {all}")
 }

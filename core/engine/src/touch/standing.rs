@@ -47,6 +47,20 @@ impl TouchWorkflow {
         self.run.as_ref().is_some_and(|run| run.phase == Phase::Working)
     }
 
+    /// Why nothing else may use the arm because of a run, and what to do; a sentence.
+    pub fn in_the_way(&self) -> Option<&'static str> {
+        let run = self.run.as_ref().filter(|run| run.is_active())?;
+        match run.phase {
+            Phase::Working => Some("A run of touches moves the arm: pause it, or wait until it is over."),
+            Phase::Preparing(_) => Some(
+                "A run of touches waits until somebody has moved the screen or a weight: say that it is done, or finish the run, first.",
+            ),
+            _ => run.left_to_put_back().map(|_| {
+                "For a run of touches the screen stands on a block, or a weight is in the hand: finish the run first, it asks for them back."
+            }),
+        }
+    }
+
     /// The place of the screen in use; `None`: not read yet. Inside `None`: the nominal one is.
     pub fn accepted(&self) -> Option<Option<&std::sync::Arc<plumbline_model::touchscreen::ScreenPlacement>>> {
         self.is_known.then_some(self.placement.as_ref())

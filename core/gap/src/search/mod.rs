@@ -24,6 +24,7 @@ mod masses;
 mod naming;
 mod refit;
 mod sizes;
+mod stated;
 mod steps;
 #[cfg(test)]
 mod tests;
@@ -47,8 +48,9 @@ use explore::Explored;
 use finish::Finish;
 use library::Library;
 use look::Look;
-pub(crate) use naming::{MOST_DIRT, still_right};
+pub(crate) use naming::MOST_DIRT;
 use refit::refit;
+pub(crate) use stated::Source;
 pub(crate) use unknown::RIVAL_P;
 
 /// Times that the model is linearized anew, at the effects found before.

@@ -8,6 +8,7 @@ use super::field::log_sum;
 use super::library::{Block, Library, together};
 use super::look::Look;
 use super::many::Many;
+use super::stated::Source;
 use super::unknown::{RIVAL_P, VETO_P};
 use crate::finding::{ClassMember, FoundParameter, NamedEffect, Verdict};
 use crate::floor::Floor;
@@ -36,12 +37,6 @@ const MANY_CANCELLING: usize = 3;
 const BOUND: f64 = 3.0;
 /// One name stands for its class from this probability on.
 const ONE_NAME: f64 = 0.8;
-/// How often a name is wrong where something unknown is at work beside it (seen on development cases of the
-/// blind test).
-const MISLED: f64 = 0.7;
-/// How probable it is at least that something unknown is at work that no rival resembles: names that everything speaks
-/// for are right in 97 to 98 of a hundred (development cases of all four generators of the blind test).
-const UNSEEN: f64 = 0.035;
 /// A gap of this size (floors) that gets no name is unexplained.
 const NO_DIRT: f64 = 0.4;
 /// Many small things that all get none are not as large as the noise itself.
@@ -73,6 +68,14 @@ pub(super) struct Named {
     pub p_value: f64,
     /// Probability that everything is a little off at once, where that is more probable than these few.
     pub many: Option<f64>,
+}
+
+/// An effect of a set that gets a name.
+struct Candidate {
+    block: usize,
+    effect: NamedEffect,
+    /// How probable it is that it is there itself, where it is, and is not left of another one.
+    share: f64,
 }
 
 /// What the search has, for naming.
@@ -111,34 +114,32 @@ impl Evidence<'_> {
         if rest > 0 {
             found = self.without_rest(&found, &names).unwrap_or(found);
         }
-        found.sort_by(|a, b| b.1.size_sigmas.total_cmp(&a.1.size_sigmas));
-        let (blocks, effects): (Vec<usize>, Vec<NamedEffect>) = found.into_iter().unzip();
+        found.sort_by(|a, b| b.effect.size_sigmas.total_cmp(&a.effect.size_sigmas));
         // What many small things together explain as well as noise is nothing unknown, unless it is more than they are.
         let is_dirt = p_value >= RIVAL_P && self.look.gap() < MOST_DIRT;
-        let nameless = effects.is_empty() && self.p_bare() < VETO_P && self.look.gap() > NO_DIRT && !is_dirt;
+        let nameless = found.is_empty() && self.p_bare() < VETO_P && self.look.gap() > NO_DIRT && !is_dirt;
         let unknown = unknown.max(if nameless { 0.6 } else { 0.0 });
         let unknown = unknown.max(if self.cancel_each_other(&top) { 0.95 } else { 0.0 });
-        // One of every joint is more than one thing.
-        let families = blocks.iter().filter(|&&block| self.look.blocks[block].is_family).count();
-        let by_names = Many::probability_by_names(effects.len() + families);
+        // One of every joint is more than one thing, and of what is left of each other no more than one is there.
+        let families = found.iter().filter(|one| self.look.blocks[one.block].is_family).count();
+        let there: f64 = found.iter().map(|one| one.share).sum();
+        let by_names = Many::probability_by_names(there.round() as usize + families);
         let many = self.many.map(|(many, by_evidence)| (many, by_evidence.max(by_names)));
         let is_many = |(_, probability): &(&Many, f64)| *probability > 0.5 && unknown <= 0.5;
-        let many = many.filter(is_many).filter(|_| !effects.is_empty());
+        let many = many.filter(is_many).filter(|_| !found.is_empty());
         let verdict = if unknown > 0.5 {
             Verdict::NotInLibrary
-        } else if effects.is_empty() {
+        } else if found.is_empty() {
             Verdict::NoGap
-        } else if many.is_none()
-            && blocks.iter().zip(&effects).all(|(&block, effect)| self.has_one_name(block, effect))
-        {
+        } else if many.is_none() && found.iter().all(|one| self.has_one_name(one)) {
             Verdict::Named
         } else {
             Verdict::Class
         };
-        let mut effects = effects;
-        // Beside something unknown a name is less sure than it looks, be it probable or not.
-        let doubt = still_right(unknown);
-        for (effect, block) in effects.iter_mut().zip(&blocks) {
+        for Candidate { block, effect, share } in &mut found {
+            let source = Source::of(self.library.effects[*block].kind);
+            effect.probability = source.told(effect.probability);
+            effect.class_probability = source.told(effect.class_probability);
             if let Some((many, probability)) = many {
                 let stands_out = probability * self.stands_out_of(many, *block);
                 let beside = |few: f64| (1.0 - probability) * few + stands_out;
@@ -147,16 +148,18 @@ impl Evidence<'_> {
                 // It is so much less probable among few only.
                 effect.runner_up = None;
             }
-            effect.probability *= doubt;
-            effect.class_probability *= doubt;
+            // Beside something unknown a name is less sure than it looks, be it probable or not.
+            effect.probability *= *share * source.still_right(unknown);
+            effect.class_probability *= source.still_right(unknown);
         }
         let many = many.map(|(_, probability)| probability);
+        let (blocks, effects) = found.into_iter().map(|one| (one.block, one.effect)).unzip();
         Named { verdict, effects, blocks, names, unknown, p_value, many }
     }
 
     /// The effects of a set that get a name, and how many others do much and get none: nothing tells what they are, or they
     /// cancel each other.
-    fn names_of(&self, set: &[usize], names: &[f64]) -> (Vec<(usize, NamedEffect)>, usize) {
+    fn names_of(&self, set: &[usize], names: &[f64]) -> (Vec<Candidate>, usize) {
         let values = self.values(set);
         let (mut found, mut rest) = (vec![], 0);
         let sizes: Vec<f64> =
@@ -185,11 +188,11 @@ impl Evidence<'_> {
                 if effect.id == Kind::EarlyLog.id() && set.iter().any(beside_all) {
                     effect.title.push_str(OTHERWISE_THAN_ALL);
                 }
-                if let Some((whole, share)) = self.may_be_left_of(set, &sizes, place) {
-                    effect.probability *= share;
+                let left_of = self.may_be_left_of(set, &sizes, place);
+                if let Some((whole, share)) = left_of {
                     effect.class = with_whole(effect.class, &self.library.effects[whole], share);
                 }
-                found.push((block, effect));
+                found.push(Candidate { block, effect, share: left_of.map_or(1.0, |(_, share)| share) });
             } else {
                 rest += 1;
             }
@@ -209,27 +212,22 @@ impl Evidence<'_> {
 
     /// Names of the most probable set, of those that cannot be told from the first one, that gives all of these names and
     /// leaves no such rest.
-    fn without_rest(
-        &self,
-        found: &[(usize, NamedEffect)],
-        names: &[f64],
-    ) -> Option<Vec<(usize, NamedEffect)>> {
+    fn without_rest(&self, found: &[Candidate], names: &[f64]) -> Option<Vec<Candidate>> {
         let (first, others) = self.explored.models.split_first()?;
-        let name = |block: usize| self.look.blocks[block].name;
+        let name = |one: &Candidate| self.look.blocks[one.block].name;
         let near = others.iter().filter(|model| model.probability * SAME_CLASS_ODDS > first.probability);
         let mut all = near.map(|model| self.names_of(&self.of_library(model), names));
-        let has_all = |other: &[(usize, NamedEffect)]| {
-            found.iter().all(|(own, _)| other.iter().any(|(block, _)| name(*block) == name(*own)))
-        };
+        let has_all =
+            |other: &[Candidate]| found.iter().all(|own| other.iter().any(|one| name(one) == name(own)));
         all.find(|(other, rest)| *rest == 0 && other.len() > found.len() && has_all(other))
             .map(|(all, _)| all)
     }
 
     /// Whether one name stands for its class. Where every joint may be wrong and one of them as well, the most probable is
     /// not one name: which joint it is stays open.
-    fn has_one_name(&self, block: usize, effect: &NamedEffect) -> bool {
-        let is_family = self.library.effects[block].is_of_every_site();
-        stands_for_its_class(&effect.class, effect.probability, is_family)
+    fn has_one_name(&self, one: &Candidate) -> bool {
+        let is_family = self.library.effects[one.block].is_of_every_site();
+        stands_for_its_class(&one.effect.class, one.effect.probability * one.share, is_family)
     }
 
     /// What it may be a part of, where it is play beside a finger that drags, or angles that were read early, and smaller.
@@ -433,12 +431,7 @@ fn with_whole(mut class: Vec<ClassMember>, whole: &Effect, share: f64) -> Vec<Cl
     class
 }
 
-/// How probable a name that is sure otherwise is, when something unknown is at work with this probability.
-pub(crate) fn still_right(unknown: f64) -> f64 {
-    1.0 - MISLED * unknown.max(UNSEEN)
-}
-
-/// The same of a class (itself first), its probability, and whether it is of every site.
+/// Whether a name stands for its class (itself first), its probability, and whether it is of every site.
 fn stands_for_its_class(class: &[ClassMember], probability: f64, is_family: bool) -> bool {
     let Some((own, others)) = class.split_first() else { return true };
     let is_open_family = is_family && others.iter().any(|member| member.id == own.id);
@@ -473,13 +466,6 @@ mod tests {
         let two = [member("joint-zero", "r_arm_x"), member("axis-skew", "r_arm_x")];
         assert!(stands_for_its_class(&two, 0.8, false));
         assert!(!stands_for_its_class(&two, 0.79, false));
-    }
-
-    #[test]
-    fn no_name_is_surer_than_that_nothing_unknown_resembles_it() {
-        assert!(still_right(0.0) < 0.98 && still_right(0.0) > 0.97);
-        assert!((still_right(0.0) - still_right(0.5 * UNSEEN)).abs() < 1e-12);
-        assert!(still_right(0.4) < 0.75 && still_right(1.0) > 0.0);
     }
 
     #[test]

@@ -20,7 +20,7 @@ use crate::operator::{Action, CommissionAction, GapAction, MountAction, Screen};
 /// Where commissioning is, and what comes next.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Course {
-    /// "Commissioning 3 of 8: place the screen – 2 of 8 touches".
+    /// "Commissioning, 2 of 8 done: place the screen – 2 of 8 touches".
     pub title: String,
     /// Where it happens.
     pub screen: Screen,

@@ -20,13 +20,15 @@ pub fn name(step: CommissionStep) -> &'static str {
     }
 }
 
-/// "Commissioning 3 of 8: place the screen – 2 of 8 touches".
+/// "Commissioning, 2 of 8 done: place the screen – 2 of 8 touches". The rail counts its steps otherwise, so the present one
+/// has no number here.
 pub(super) fn title(view: &View, step: Option<CommissionStep>) -> String {
     let Some(step) = step else { return "Commissioning: all 8 steps are done".to_owned() };
     let name = name(step);
     let (first, rest) = name.split_at(1);
     let far = far(view, step).map_or_else(String::new, |far| format!(" – {far}"));
-    format!("Commissioning {} of 8: {}{rest}{far}", step.number(), first.to_lowercase())
+    let done = view.commission.steps.iter().filter(|step| step.done().is_some()).count();
+    format!("Commissioning, {done} of 8 done: {}{rest}{far}", first.to_lowercase())
 }
 
 /// How far a step is.

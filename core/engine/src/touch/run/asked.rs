@@ -97,7 +97,7 @@ impl Run {
             return Err(Refusal::NotNumbers);
         }
         self.may_be_prepared(preparation, now)?;
-        self.progress.prepared = preparation;
+        (self.progress.prepared, self.is_hearsay) = (preparation, false);
         self.changed();
         if let Phase::Preparing(_) = self.phase {
             self.phase = Phase::Working;

@@ -7,7 +7,7 @@ use plumbline_model::robot::{Arm, Rig};
 use plumbline_model::session::Touchscreen;
 
 use super::going::{next_order, speed};
-use super::{AtEnd, Now, Phase, Run, Task, UnderWay};
+use super::{AS_IT_LIES, AtEnd, Now, Phase, Run, Task, UnderWay};
 use crate::ground::notice::NoticeLevel;
 use crate::motion::{NoWay, TouchPace};
 use crate::robot::view::MotionState;
@@ -15,9 +15,6 @@ use crate::robot::{RobotControl, TouchStage, WithdrawOrder};
 use crate::touch::over::{TO_REACH, arm_in, is_away};
 use crate::touch::refusal::Refusal;
 use crate::touch::work::{AwayRequest, Context, TouchWork};
-
-/// The screen on the table, nothing at the hand.
-const AS_IT_LIES: [f64; 2] = [0.0, 0.0];
 
 impl Run {
     /// All is done, or shall be: the screen is put back and the weight taken off before the run is over, for from then
@@ -38,7 +35,7 @@ impl Run {
         if let Some(left) = self.left_to_put_back() {
             let text = format!("Before anything moves: {left}. From now on it is taken to be so.");
             context.notices.add(NoticeLevel::Warning, text);
-            self.progress.prepared = AS_IT_LIES;
+            (self.progress.prepared, self.is_hearsay) = (AS_IT_LIES, false);
             self.tell_twin(now.robot, context);
         }
         self.finish(now, context);
@@ -144,7 +141,7 @@ impl Run {
     /// # Errors
     /// A sentence, while a hand is over it: it cannot have been put there without meeting the hand.
     pub fn may_be_prepared(&self, [to_m, _]: [f64; 2], now: &Now<'_>) -> Result<(), Refusal> {
-        if !to_m.is_finite() || to_m <= self.progress.prepared[0] {
+        if !to_m.is_finite() || to_m <= self.progress.prepared[0] && !self.is_hearsay {
             return Ok(());
         }
         if matches!(now.robot.motion, MotionState::Moving { .. }) {

@@ -36,7 +36,7 @@ impl Run {
             self.phase = Phase::Paused(Some(trouble.to_string()));
             return;
         }
-        if aim.preparation() != self.progress.prepared {
+        if aim.preparation() != self.progress.prepared || self.is_hearsay {
             return self.prepare(aim.preparation(), aim.touch.number, now, context);
         }
         self.route(aim, now, context);

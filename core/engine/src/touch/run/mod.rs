@@ -96,6 +96,9 @@ pub struct Now<'a> {
     pub trouble: Option<Trouble>,
 }
 
+/// The screen on the table, nothing at the hand.
+const AS_IT_LIES: [f64; 2] = [0.0, 0.0];
+
 /// A run, under way or shown.
 #[derive(Clone, Debug)]
 pub struct Run {
@@ -131,6 +134,9 @@ pub struct Run {
     beside_m: Vector3<f64>,
     /// The arm went away from the screen, and has not been sent back since.
     is_away: bool,
+    /// The screen stands on a block, or the hand carries a weight, by what the disk says: nobody has said so since the run
+    /// was opened.
+    is_hearsay: bool,
     /// The operator ends it before all is done.
     ends: bool,
     ended: bool,
@@ -153,6 +159,7 @@ impl Run {
         Self {
             beside_m: newest.map_or_else(Vector3::zeros, |aim| aim.wanted().beside_m()),
             end_on_disk: progress.finished,
+            is_hearsay: progress.prepared != AS_IT_LIES,
             session,
             plan: Arc::new(plan),
             phase: if progress.finished { Phase::Finished } else { Phase::Paused(None) },

@@ -47,6 +47,14 @@ fn waits_for(desk: &Desk) -> Option<(f64, f64)> {
     }
 }
 
+/// What somebody is asked to do.
+fn asked(desk: &Desk) -> String {
+    match desk.view().phase {
+        TouchPhase::Waiting { what, .. } => what,
+        other => panic!("it waits for nobody: {other:?}"),
+    }
+}
+
 /// Height of the fingertip above the glass where it lies on the table, m.
 fn above_glass_m(posture: &Posture) -> f64 {
     let tip = rig().chain("right_index_tip").map(|chain| chain.robot_from_tip_in(posture).translation_m());
@@ -157,6 +165,7 @@ fn a_run_that_is_ended_early_asks_for_the_screen_back_and_no_more_than_once() {
     let away = desk.withdrawal().expect("it goes away");
     desk.withdraw(&away);
     assert_eq!(waits_for(&desk), Some((0.0, 0.0)));
+    assert!(asked(&desk).contains("nothing moves any more"), "{}", asked(&desk));
     // Whoever cannot put it back now is told what follows from that.
     desk.apply(TouchCommand::Finish);
     assert_eq!(desk.view().phase, TouchPhase::Finished);
@@ -175,17 +184,29 @@ fn whoever_closes_a_run_on_a_block_is_told_that_the_screen_still_stands_there() 
     let folder = folder();
     let mut desk = Desk::new(folder.path());
     asked_for_the_block(&mut desk);
+    let in_the_way = |desk: &Desk| desk.workflow.in_the_way().unwrap_or_default();
+    assert!(in_the_way(&desk).contains("say that it is done"), "{}", in_the_way(&desk));
     desk.apply(TouchCommand::Close);
+    assert_eq!(in_the_way(&desk), "");
     assert!(!desk.said().contains("higher"), "as it lay: {}", desk.said());
     let session = desk.view().unfinished[0].session.clone();
     desk.apply(TouchCommand::Open { session: session.clone() });
     desk.apply(TouchCommand::Resume);
     desk.apply(done(BLOCK_M));
+    assert!(desk.order().is_some());
     desk.apply(TouchCommand::Close);
     assert!(desk.said().contains("stands 60 mm higher"), "{}", desk.said());
-    // Opened again it goes on as it stands.
+    // Opened again nobody knows whether it still stands there, and the arm waits until somebody has looked.
     desk.apply(TouchCommand::Open { session });
+    assert!(in_the_way(&desk).contains("stands on a block"), "{}", in_the_way(&desk));
     desk.apply(TouchCommand::Resume);
+    assert!(desk.order().is_none());
+    let said = asked(&desk);
+    assert!(
+        said.contains("See that the screen stands on its block of 60 mm") && said.contains("goes on"),
+        "{said}"
+    );
+    desk.apply(done(BLOCK_M));
     let order = desk.order().expect("nothing has to be prepared");
     assert!(above_glass_m(order.lower.last().expect("a way down")) > BLOCK_M - 0.02);
 }
