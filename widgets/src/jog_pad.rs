@@ -14,12 +14,12 @@ use crate::format;
 use crate::glyph::{self, Glyph};
 use crate::theme::{self, space};
 
-const CELL: egui::Vec2 = vec2(62.0, 40.0);
+const CELL: egui::Vec2 = vec2(64.0, 40.0);
 const GAP: f32 = space::XS;
 const ENABLE_HEIGHT: f32 = 46.0;
 const PAD_WIDTH: f32 = 5.0 * CELL.x + 4.0 * GAP + 2.0 * space::S;
 /// Where height and turn stand below the plane there is little height, too.
-const NARROW_CELL: egui::Vec2 = vec2(62.0, 34.0);
+const NARROW_CELL: egui::Vec2 = vec2(64.0, 34.0);
 const NARROW_ENABLE_HEIGHT: f32 = 40.0;
 const NARROW_WIDTH: f32 = 3.0 * NARROW_CELL.x + 2.0 * GAP;
 

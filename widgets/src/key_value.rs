@@ -87,7 +87,8 @@ fn show_row(ui: &mut Ui, row: &KeyValue, width: f32) {
     // Words that need it go over the room of the unit that they lack; where both do not fit beside each other even so, the
     // name gets a line of its own, and what is longer than a line goes on in the next one.
     let beside = name.size().x + space::S + value.size().x;
-    let unit_room = if row.unit.is_empty() && beside + UNIT_WIDTH > width { 0.0 } else { UNIT_WIDTH };
+    let line = if beside <= width { beside } else { value.size().x };
+    let unit_room = if row.unit.is_empty() && line + UNIT_WIDTH > width { 0.0 } else { UNIT_WIDTH };
     let stacked = beside + unit_room > width;
     let value = if stacked && value.size().x > width - unit_room {
         ui.painter().layout(row.value.clone(), font.clone(), value_color, width - unit_room)

@@ -75,8 +75,13 @@ fn next(window: &PlumblineWindow, course: &Course, ui: &mut Ui, outbox: &mut Out
     }
     ui.spacing_mut().button_padding.x = space::M;
     match &course.press {
-        Press::Do { label, .. } => {
-            let button = accent_button(ui, next_label(label)).min_size(egui::vec2(120.0, 34.0));
+        Press::Do { label, actions } => {
+            let label = if leads_only(window.settings.screen, course.screen, actions) {
+                Action::Go(course.screen).label()
+            } else {
+                label.clone()
+            };
+            let button = accent_button(ui, next_label(&label)).min_size(egui::vec2(120.0, 34.0));
             let keys = shortcut_text(ui.ctx(), Action::Next).unwrap_or_default();
             let hover = format!("{}\n{keys} does the same", course.sentence);
             let resting = just_pressed.is_some() || window.commission_rest.is_on(ui.ctx());
@@ -103,6 +108,12 @@ fn next(window: &PlumblineWindow, course: &Course, ui: &mut Ui, outbox: &mut Out
     ui.add_space(space::S);
 }
 
+/// Whether the next press only leads to where it is said what will move: from elsewhere nothing begins to move.
+fn leads_only(from: Screen, to: Screen, actions: &[Action]) -> bool {
+    let is_said = from == Screen::Commission || from == to;
+    !is_said && actions.iter().any(|action| action.moves_the_robot())
+}
+
 /// "Next: show the board at all places".
 fn next_label(label: &str) -> String {
     let mut letters = label.chars();
@@ -116,11 +127,9 @@ impl PlumblineWindow {
         if action == CommissionAction::Next {
             let Some(Course { screen, press: Press::Do { actions, .. }, .. }) = course(&view) else { return };
             self.commission_pressed = Some(Instant::now());
-            // From elsewhere the first press only leads to where it is said what will move.
-            let is_said =
-                matches!(self.settings.screen, Screen::Commission) || self.settings.screen == screen;
+            let leads_only = leads_only(self.settings.screen, screen, &actions);
             self.settings.screen = screen;
-            if !is_said && actions.iter().any(|action| action.moves_the_robot()) {
+            if leads_only {
                 return;
             }
             actions.into_iter().for_each(|action| self.act(ctx, action));

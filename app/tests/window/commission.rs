@@ -225,6 +225,12 @@ fn touches_are_planned_begun_and_waited_for() {
     let (label, _, sent) = press(view.clone());
     assert!(label.starts_with("Next: touch ") && label.ends_with(" targets"), "{label}");
     assert_eq!(sent, [Command::from(TouchCommand::Start)]);
+    // From elsewhere the first press only leads to where it is said what will move, and says so.
+    let fake = Fake::over(view.clone());
+    let mut elsewhere = fake.window(on(Screen::Gap));
+    click(&mut elsewhere, "Next: go to Touch");
+    assert_eq!(fake.take_sent(), []);
+    assert!(says(&elsewhere, &label) && shows(&elsewhere, "Place of the screen"));
     // Planned for something else: not begun.
     let mut other = view.clone();
     other.commission = led_to(CommissionStep::Check);

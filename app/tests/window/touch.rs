@@ -101,7 +101,10 @@ fn one_button_leads_through_the_work() {
 #[test]
 fn a_finished_training_run_leads_to_the_models() {
     let (fake, mut window) = window(with_touch(after(200, TouchPhase::Finished)));
-    assert!(says(&window, "Finished: "));
+    assert!(says(&window, "Finished: ") && shows(&window, "Go to Models"));
+    let corners = planned(PlanOptions::place_screen(area()));
+    let placed = TouchView { phase: TouchPhase::Finished, ..corners };
+    assert!(!shows(&self::window(with_touch(placed)).1, "Go to Models"), "they teach nothing");
     press_next(&mut window, "Train models");
     assert_eq!(sent(&fake), []);
     assert!(!says(&window, "Finished: "), "another screen is open");

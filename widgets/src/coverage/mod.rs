@@ -94,7 +94,7 @@ fn range_text([low, high]: [f64; 2], quantity: Quantity) -> String {
 
 /// Draws both images' coverage, the two histograms and the advice.
 pub fn coverage_view(ui: &mut Ui, coverage: &Coverage) {
-    let column = ((ui.available_width() - space::M) / 2.0).max(120.0);
+    let column = ((ui.available_width() - space::M) / 2.0).max(96.0);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = space::M;
         for eye in Eye::BOTH {
@@ -115,6 +115,8 @@ pub fn coverage_view(ui: &mut Ui, coverage: &Coverage) {
     ui.label(coverage.advice());
 }
 
+/// Least room of a number below a histogram.
+const TICK_WIDTH: f32 = 30.0;
 /// A map that is this wide has room for words over it.
 const WORDY: f32 = 140.0;
 
@@ -194,7 +196,7 @@ fn histogram(ui: &mut Ui, title: &str, data: &Histogram, quantity: Quantity, siz
         painter.rect_filled(bar, 0.0, color);
     }
     let [low, high] = data.range().map(|v| quantity.on_screen(v));
-    let ticks = axis::ticks(low, high, 6);
+    let ticks = axis::ticks(low, high, ((plot.width() / TICK_WIDTH) as usize).clamp(2, 6));
     for (tick, text) in ticks.iter().zip(axis::labels(&ticks)) {
         let x = plot.left() + plot.width() * ((tick - low) / (high - low)) as f32;
         let anchor = if x - rect.left() < 8.0 {

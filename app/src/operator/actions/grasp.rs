@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use plumbline_engine::view::{GateState, GraspPhase};
+use plumbline_engine::view::{GateState, GraspPhase, TouchPhase};
 use plumbline_engine::{Command, GraspCommand, HandStep, View};
 use serde::Serialize;
 
@@ -124,6 +124,9 @@ fn judged(view: &View) -> Option<String> {
 
 /// The first gate of the arm that is shut.
 fn arm_trouble(view: &View) -> Refusal {
+    if matches!(view.touch.phase, TouchPhase::Running { .. }) {
+        return Some("a run of touches moves the arm: pause it first".into());
+    }
     let of_arm = ["Robot", "STOP", "Arm"];
     let mut gates = view.grasp.gates.iter();
     let shut = gates.find(|gate| gate.state == GateState::Shut && of_arm.contains(&gate.name));

@@ -72,7 +72,8 @@ fn row(ui: &mut Ui, cx: &mut PanelContext<'_>, seen: &HeadViewSummary) {
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 ui.spacing_mut().item_spacing.x = space::XS;
-                head_label(ui, seen.pan_rad, seen.tilt_rad).on_hover_text(format!(
+                let color = theme::tokens(ui).text;
+                head_label(ui, seen.pan_rad, seen.tilt_rad, color).on_hover_text(format!(
                     "{}: {} left, {} right",
                     seen.name,
                     format::count(seen.corners.0, "corner"),
@@ -104,21 +105,21 @@ fn fit(ui: &mut Ui, left_out: Option<&str>, rms_px: Option<f64>) {
 }
 
 /// In a column of its own.
-fn head_label(ui: &mut Ui, pan_rad: f64, tilt_rad: f64) -> egui::Response {
+fn head_label(ui: &mut Ui, pan_rad: f64, tilt_rad: f64, color: egui::Color32) -> egui::Response {
     let (rect, response) = ui.allocate_exact_size(egui::vec2(132.0, ROW), egui::Sense::hover());
     let font = egui::TextStyle::Body.resolve(ui.style());
     let text = head_text(pan_rad, tilt_rad);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &text));
-    let color = theme::tokens(ui).text;
     ui.painter().text(rect.left_center(), egui::Align2::LEFT_CENTER, &text, font, color);
     response
 }
 
+/// Weak, for the head was not turned there yet; the line above says how many these are.
 fn planned_row(ui: &mut Ui, pan_rad: f64, tilt_rad: f64) {
     ui.horizontal(|ui| {
         ui.set_min_height(ROW);
-        head_label(ui, pan_rad, tilt_rad);
-        ui.label(theme::small(ui, "planned"));
+        let color = theme::tokens(ui).text_weak;
+        head_label(ui, pan_rad, tilt_rad, color).on_hover_text("planned");
     });
 }
 

@@ -3,7 +3,7 @@
 use egui::{Button, RichText, ScrollArea, Ui, vec2};
 use plumbline_engine::TouchCommand;
 use plumbline_engine::view::{TouchFigures, TouchOutcome, TouchPhase, TouchState, TouchView};
-use plumbline_model::touch_plan::Finger;
+use plumbline_model::touch_plan::{Finger, PlanOptions, Purpose};
 use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::format;
 use plumbline_widgets::key_value::big_figure;
@@ -120,8 +120,10 @@ fn finished(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     }
     ui.horizontal(|ui| {
         action_button(ui, cx, TouchAction::Close, "Close the run");
-        let left = cx.view.touch.plan.as_ref().is_some_and(|plan| plan.options.finger == Finger::Left);
-        if !left && ui.button("Go to Models").clicked() {
+        // Models learn from touches of the right finger that were made for them.
+        let teaches = |plan: &PlanOptions| plan.finger == Finger::Right && plan.purpose == Purpose::Train;
+        let leads_to_models = cx.view.touch.plan.as_ref().is_some_and(|plan| teaches(&plan.options));
+        if leads_to_models && ui.button("Go to Models").clicked() {
             cx.outbox.act(Action::Go(Screen::Models));
         }
     });

@@ -11,7 +11,7 @@ use plumbline_handeye::{HandEyeError, Start, Tied, tie};
 use plumbline_model::robot::Rig;
 use plumbline_model::{Cancelled, JobContext, Session, StereoCalibration};
 
-use super::progress::{Progress, Watcher};
+use super::progress::{Progress, Unreported, Watcher};
 use crate::gap::search::measured;
 use crate::grasp::{LedBody, Ropes};
 use crate::ground::jobs::JobError;
@@ -54,9 +54,11 @@ impl Look {
         };
         let mut body = LedBody::new(rig.clone(), self.ropes.clone(), context);
         let mut watcher = Watcher { progress: self.progress.clone(), context, looks: 0 };
-        tie(&mut body, &start, &touches, self.at, &mut watcher, context).map_err(|error| match error {
-            HandEyeError::Cancelled(_) | HandEyeError::Halted(Halt::Cancelled) => Cancelled.into(),
-            other => JobError::Failed(sentence(&other.to_string())),
+        tie(&mut body, &start, &touches, self.at, &mut watcher, &Unreported(context)).map_err(|error| {
+            match error {
+                HandEyeError::Cancelled(_) | HandEyeError::Halted(Halt::Cancelled) => Cancelled.into(),
+                other => JobError::Failed(sentence(&other.to_string())),
+            }
         })
     }
 

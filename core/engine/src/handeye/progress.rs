@@ -7,8 +7,8 @@ use plumbline_handeye::body::SeenBody;
 use plumbline_handeye::hands::Looks;
 use plumbline_handeye::screen::SeenScreen;
 use plumbline_handeye::{Part, Seen, Watch};
-use plumbline_model::JobContext;
 use plumbline_model::robot::Rig;
+use plumbline_model::{Cancelled, JobContext};
 
 use super::view::{PartState, PartView};
 
@@ -81,4 +81,14 @@ impl Watch for Watcher<'_> {
     fn computes(&mut self, what: &str) {
         self.report(what);
     }
+}
+
+/// A part of a job that says how far it is otherwise: what it reports would run from none to all once more.
+pub struct Unreported<'a>(pub &'a dyn JobContext);
+
+impl JobContext for Unreported<'_> {
+    fn checkpoint(&self) -> Result<(), Cancelled> {
+        self.0.checkpoint()
+    }
+    fn report(&self, _fraction: f64, _doing: &str) {}
 }

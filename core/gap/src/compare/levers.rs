@@ -135,6 +135,7 @@ mod tests {
                     when: i as f64,
                     turned_rad: vec![turned_rad],
                     temperature_c: None,
+                    at: None,
                     off,
                     levers: vec![lever],
                 }

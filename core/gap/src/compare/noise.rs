@@ -290,7 +290,15 @@ fn of_stands(measurements: &Measurements, residuals: &[Option<Vec<f64>>], what: 
         }
         let mean = |c: usize| together.iter().map(|(.., off)| off[c]).sum::<f64>() / together.len() as f64;
         let off = (0..what.len()).map(mean).collect();
-        Repeat { cell, when: together[0].1, turned_rad: vec![], temperature_c: None, off, levers: vec![] }
+        Repeat {
+            cell,
+            when: together[0].1,
+            turned_rad: vec![],
+            temperature_c: None,
+            at: None,
+            off,
+            levers: vec![],
+        }
     };
     looks.into_values().map(one).collect()
 }
@@ -342,6 +350,13 @@ fn repeats(
         let row = &measurements.rows[i];
         if row.what.is_placed() { row.angles_rad() } else { &row.neck_rad }
     };
+    // What was measured first in a cell says where it lies.
+    let mut places = BTreeMap::<usize, [f64; 2]>::new();
+    for row in ordered.iter().map(|&i| &measurements.rows[i]).filter(|row| row.what.is_placed()) {
+        if let [x, y, ..] = row.measured[..] {
+            places.entry(row.cell).or_insert([x, y]);
+        }
+    }
     let mut means = BTreeMap::<usize, (Vec<f64>, f64)>::new();
     for (i, residual) in rows.iter().filter_map(|&i| Some((i, residuals[i].as_ref()?))) {
         let (sum, count) =
@@ -367,6 +382,7 @@ fn repeats(
             when: row.t_secs.filter(|_| timed).unwrap_or(place as f64),
             turned_rad,
             temperature_c: warmth.map(|all| all.iter().sum::<f64>() / all.len() as f64).or(row.ambient_c),
+            at: places.get(&row.cell).copied(),
             off: residual.iter().zip(sum).map(|(value, sum)| value - sum / count).collect(),
             levers: levers(measurements, assumed, i),
         });

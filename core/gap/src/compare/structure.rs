@@ -1,7 +1,8 @@
 //! Repeats that differ by what was logged of them: noise with structure is no noise.
 //!
 //! Deviations of rows from the mean of their cell are regressed, one covariate at a time, on a wobble
-//! over time (or over the order of the rows), on how each joint came to its angle, and on temperature.
+//! over time (or over the order of the rows), on a jump at a moment that is not the same everywhere, on how each joint came to
+//! its angle, and on temperature.
 //! What that explains beyond chance is a gap; what it leaves is noise.
 
 use nalgebra::DMatrix;
@@ -13,6 +14,8 @@ use crate::statistics::robust_sd;
 /// Full turns of a wobble that are tried at most, and rows that each needs.
 const MOST_TURNS: usize = 60;
 const ROWS_PER_TURN: usize = 6;
+/// Moments at which something may have jumped that are tried at most (Quandt 1960).
+const MOST_MOMENTS: usize = 24;
 /// The same of a thing that was watched, by halves of a turn; fewer rows say nothing.
 const LOOKS_PER_TURN: usize = 4;
 const FEWEST_LOOKS: usize = 16;
@@ -32,6 +35,8 @@ pub struct Repeat {
     pub turned_rad: Vec<f64>,
     /// Mean temperature, °C.
     pub temperature_c: Option<f64>,
+    /// Where its cell lies, along two axes in their units; `None` where that is no place of the arm.
+    pub at: Option<[f64; 2]>,
     pub off: Vec<f64>,
     /// What the turn of each joint does to each coordinate, where that differs from pose to pose; else empty.
     pub levers: Vec<Vec<f64>>,
@@ -127,6 +132,7 @@ fn covariates(rows: &[Repeat], when: &str, joints: &[String]) -> Vec<(String, Ve
         for turns in 1..=MOST_TURNS.min(rows.len() / ROWS_PER_TURN) {
             all.push((when.to_owned(), turning(rows, turns as f64)));
         }
+        all.extend(jumps(rows).into_iter().map(|columns| (when.to_owned(), columns)));
     }
     for (j, joint) in joints.iter().enumerate() {
         let turned = |row: &Repeat| row.turned_rad.get(j).copied().unwrap_or(0.0);
@@ -137,6 +143,32 @@ fn covariates(rows: &[Repeat], when: &str, joints: &[String]) -> Vec<(String, Ve
     let known: Option<Vec<f64>> = rows.iter().map(|row| row.temperature_c).collect();
     all.extend(known.map(|warmth| ("temperature".to_owned(), vec![warmth])));
     all
+}
+
+/// A jump at each of some moments, the same everywhere and growing along both axes of the place: a screen that was knocked has
+/// turned as well, which moves touches on its two sides to opposite sides, by nothing on average.
+fn jumps(rows: &[Repeat]) -> Vec<Vec<Vec<f64>>> {
+    let Some(places) = rows.iter().map(|row| row.at).collect::<Option<Vec<[f64; 2]>>>() else {
+        return vec![];
+    };
+    let along = |axis: usize| -> Vec<f64> {
+        let mean = places.iter().map(|at| at[axis]).sum::<f64>() / places.len() as f64;
+        let square = places.iter().map(|at| (at[axis] - mean).powi(2)).sum::<f64>() / places.len() as f64;
+        places.iter().map(|at| (at[axis] - mean) / square.sqrt().max(1e-12)).collect()
+    };
+    let axes = [vec![1.0; rows.len()], along(0), along(1)];
+    let mut moments: Vec<f64> = rows.iter().map(|row| row.when).collect();
+    moments.sort_by(f64::total_cmp);
+    let tried = MOST_MOMENTS.min(rows.len() / ROWS_PER_TURN);
+    let moment = |k: usize| moments[(k + 1) * rows.len() / (tried + 1)];
+    let jump = |from: f64| {
+        let of = |axis: &Vec<f64>| {
+            let after = rows.iter().zip(axis);
+            after.map(|(row, place)| if row.when >= from { *place } else { 0.0 }).collect()
+        };
+        axes.iter().map(of).collect()
+    };
+    (0..tried).map(|k| jump(moment(k))).collect()
 }
 
 /// Columns less their means within cells, of unit length; `None` where repeats hardly differ in them.
@@ -167,6 +199,11 @@ mod tests {
 
     use super::*;
 
+    /// Where a cell lies along an axis, -1 to 1.
+    fn place(row: i32, stride: i32) -> f64 {
+        f64::from(row % 40 * stride % 40) / 19.5 - 1.0
+    }
+
     /// 40 cells of four repeats in an order drawn by chance; `of` is added to the first coordinate.
     fn rows(seed: u64, of: impl Fn(f64, f64) -> f64) -> Vec<Repeat> {
         let mut random = StdRng::seed_from_u64(seed);
@@ -177,7 +214,15 @@ mod tests {
                 let (when, turned) = (7.0 * f64::from(i), random.random_range(-0.5..0.5));
                 let off = vec![off[0] + of(when, turned), off[1]];
                 let cell = usize::try_from(i % 40).expect("small");
-                Repeat { cell, when, turned_rad: vec![turned], temperature_c: None, off, levers: vec![] }
+                Repeat {
+                    cell,
+                    when,
+                    turned_rad: vec![turned],
+                    temperature_c: None,
+                    at: Some([place(i, 7), place(i, 11)]),
+                    off,
+                    levers: vec![],
+                }
             })
             .collect();
         for cell in 0..40 {
@@ -201,6 +246,26 @@ mod tests {
             let structure = found(&rows).expect("two standard deviations");
             assert_eq!(structure.on, "time");
             assert!(structure.size_sigmas > 0.5, "{structure:?}");
+        }
+    }
+
+    #[test]
+    fn a_screen_that_turns_about_its_middle_between_two_repeats_is_found() {
+        for seed in 0..10 {
+            let mut rows = rows(200 + seed, |_, _| 0.0);
+            // From the third pass on; what it does is nothing on average.
+            let turn = |cell: usize, pass: usize| {
+                let turned = if pass >= 2 { 0.5 } else { -0.5 };
+                5.0 * turned * place(i32::try_from(cell).expect("small"), 7)
+            };
+            for (i, row) in rows.iter_mut().enumerate() {
+                row.off[0] += turn(row.cell, i / 40);
+            }
+            let structure = found(&rows).expect("five standard deviations");
+            assert_eq!(structure.on, "time");
+            let spread: f64 = rows.iter().map(|row| row.off[0] * row.off[0]).sum();
+            let noise = (spread * structure.left[0] / 120.0).sqrt();
+            assert!((noise - 1.0).abs() < 0.35, "{noise}");
         }
     }
 

@@ -138,8 +138,6 @@ impl Evidence<'_> {
         };
         for Candidate { block, effect, share } in &mut found {
             let source = Source::of(self.library.effects[*block].kind);
-            effect.probability = source.told(effect.probability);
-            effect.class_probability = source.told(effect.class_probability);
             if let Some((many, probability)) = many {
                 let stands_out = probability * self.stands_out_of(many, *block);
                 let beside = |few: f64| (1.0 - probability) * few + stands_out;
