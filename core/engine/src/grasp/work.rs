@@ -127,7 +127,9 @@ impl GraspResult {
                 None => "The grasp ended without a word.".to_owned(),
             },
             Self::HandDone(step, Ok(())) => format!("{}: done.", step.title()),
-            Self::HandDone(step, Err(why)) => format!("{}: {}.", step.title(), why.trim_end_matches('.')),
+            Self::HandDone(step, Err(why)) => {
+                format!("{}: {}.", step.title(), why.to_string().trim_end_matches('.'))
+            }
             Self::Judged(attempt) => match attempt.told {
                 Some(true) => "Kept: it was held.".to_owned(),
                 _ => "Kept: it was not held.".to_owned(),
