@@ -348,7 +348,7 @@ fn while_one_is_led_no_other_screen_leads_elsewhere() {
     assert!(says(&led(false), "Next: train models on them"));
     let window = led(true);
     assert!(!says(&window, "Next: train models"));
-    assert!(says(&window, "Next: look at the hands") && says(&window, "The head turns, then each open hand"));
+    assert!(says(&window, "Next: go to Hand-eye") && says(&window, "The head turns, then each open hand"));
 }
 
 /// The strip stands on every screen; what moves is said on the step's own.
@@ -357,7 +357,7 @@ fn from_another_screen_what_moves_is_said_before_it_moves() {
     let fake = Fake::over(at(CommissionStep::Hands));
     let mut window = fake.window(on(Screen::Live));
     assert!(!shows(&window, "Hands over the table"), "another screen");
-    click(&mut window, "Next: look at the hands");
+    click(&mut window, "Next: go to Hand-eye");
     window.run_steps(3);
     assert_eq!(fake.take_sent(), [], "nothing moves yet");
     is_on(&window, "Hands over the table");

@@ -48,6 +48,19 @@ fn the_moment_of_a_large_step_is_known_to_a_few_rows() {
 }
 
 #[test]
+fn a_screen_that_was_knocked_and_turned_between_two_passes_is_no_noise() {
+    // What the turn does to touches is nothing on average; the spread of repeats is nine times the noise.
+    let plan = Plan { places: 36, repeats: 3, by_passes: true, ..Plan::default() };
+    let mut knocked = present(&touches(&plan, &[], 1), "screen-bumped", "screen", &[-0.002, 0.003, 0.16]);
+    knocked.effect = knocked.effect.with_shape(Some(580.0));
+    let finding = found(&plan, &[knocked], 5);
+    assert!(finding.comparison.is_gap, "{}", finding.sentence);
+    let knock = named(&finding, "screen-bumped", "screen").expect("named");
+    let yaw = knock.parameters.iter().find(|one| one.name == "yaw_rad").expect("reported");
+    assert!(yaw.low <= 0.16 && 0.16 <= yaw.high, "{yaw:?}");
+}
+
+#[test]
 fn a_drag_is_named_whichever_way_it_grows() {
     // Every finger comes in about as flat here, so which of the two it is stays open, and the interval reaches over both.
     let plan = Plan { places: 60, sides: vec!["plus", "minus"], noise_m: 0.6e-3, ..Plan::default() };

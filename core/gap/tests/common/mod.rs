@@ -28,11 +28,21 @@ pub struct Plan {
     pub heights: Vec<f64>,
     /// Noise of u and v (or x, y, z), m.
     pub noise_m: f64,
+    /// All places once, then all of them again; else repeats follow each other.
+    pub by_passes: bool,
 }
 
 impl Default for Plan {
     fn default() -> Self {
-        Self { places: 60, repeats: 3, payloads: vec![0.0], sides: vec![], heights: vec![0.0], noise_m: 1e-3 }
+        Self {
+            places: 60,
+            repeats: 3,
+            payloads: vec![0.0],
+            sides: vec![],
+            heights: vec![0.0],
+            noise_m: 1e-3,
+            by_passes: false,
+        }
     }
 }
 
@@ -61,7 +71,8 @@ fn rows(plan: &Plan, random: &mut StdRng) -> Vec<Row> {
     for place in 0..plan.places {
         let angles: [f64; 6] =
             std::array::from_fn(|j| BASE[j] + SPREAD[j] * (2.0 * random.random::<f64>() - 1.0));
-        for _ in 0..plan.repeats {
+        for pass in 0..plan.repeats {
+            let order = if plan.by_passes { pass * plan.places + place } else { rows.len() };
             rows.push(Row {
                 angles,
                 group: place,
@@ -69,10 +80,11 @@ fn rows(plan: &Plan, random: &mut StdRng) -> Vec<Row> {
                 payload: plan.payloads[place / 2 % plan.payloads.len()],
                 height: plan.heights[place / 3 % plan.heights.len()],
                 set: place * 8 / plan.places,
-                t: rows.len() * 8,
+                t: order * 8,
             });
         }
     }
+    rows.sort_by_key(|row| row.t);
     rows
 }
 
