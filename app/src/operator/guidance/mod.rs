@@ -18,7 +18,9 @@ mod touch;
 pub use commission::{Course, Press, course, done_in_words, name as commission_name, spent};
 pub use gap::is_of_choice;
 pub use sentence::Guidance;
-pub use touch::{check_in_words, done_of, go_on, is_screen_to_be_decided, minutes, wanted, what_moves};
+pub use touch::{
+    check_in_words, done_of, go_on, is_screen_to_be_decided, minutes, waiting_touch, wanted, what_moves,
+};
 
 use plumbline_engine::View;
 use plumbline_engine::view::{CaptureHint, Connection, EyesView, Proposal, SourceStatus};

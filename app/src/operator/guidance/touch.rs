@@ -138,10 +138,15 @@ fn paused(touch: &TouchView, why: Option<&str>) -> Guidance {
     if why.is_empty() { guidance } else { guidance.warn() }
 }
 
+/// The number of the first touch that is still to be made.
+pub fn waiting_touch(touch: &TouchView) -> Option<usize> {
+    touch.touches.iter().find(|one| one.outcome == TouchOutcome::Waiting).map(|one| one.number)
+}
+
 /// What resuming does: "Go on with touch 15", by its number in the plan, as everywhere.
 pub fn go_on(touch: &TouchView) -> String {
-    match touch.touches.iter().find(|one| one.outcome == TouchOutcome::Waiting) {
-        Some(next) => format!("Go on with touch {}", next.number),
+    match waiting_touch(touch) {
+        Some(number) => format!("Go on with touch {number}"),
         // All may be done, and only the screen be left to be put back.
         None => "Go on".to_owned(),
     }

@@ -64,10 +64,12 @@ pub fn recording_to_export(view: &View) -> Option<PathBuf> {
 pub fn clock(at: jiff::Timestamp) -> String {
     let zone = jiff::tz::TimeZone::system();
     let (at, now) = (at.to_zoned(zone.clone()), jiff::Timestamp::now().to_zoned(zone));
-    let format = match () {
-        () if at.date() == now.date() => "%H:%M",
-        () if at.year() == now.year() => "%-d %b, %H:%M",
-        () => "%-d %b %Y, %H:%M",
+    let format = if at.date() == now.date() {
+        "%H:%M"
+    } else if at.year() == now.year() {
+        "%-d %b, %H:%M"
+    } else {
+        "%-d %b %Y, %H:%M"
     };
     at.strftime(format).to_string()
 }

@@ -1,9 +1,10 @@
 //! What the panes of this folder share.
 
-use plumbline_engine::view::{TouchOutcome, TouchPhase, TouchState, TouchView};
+use plumbline_engine::view::{TouchPhase, TouchState, TouchView};
 use plumbline_model::robot::Posture;
 
 use crate::operator::Screen;
+use crate::operator::guidance::waiting_touch;
 use crate::panels::PanelContext;
 
 /// The posture at the contact of the chosen touch, or of the next one, to be drawn as a ghost;
@@ -23,7 +24,7 @@ pub fn next_touch(touch: &TouchView) -> Option<usize> {
     if let TouchPhase::Running { number, .. } = touch.phase {
         return Some(number);
     }
-    touch.touches.iter().find(|one| one.outcome == TouchOutcome::Waiting).map(|one| one.number)
+    waiting_touch(touch)
 }
 
 /// A planned touch by its number.

@@ -40,6 +40,17 @@ fn asked_for_the_block(desk: &mut Desk) {
     assert_eq!(waits_for(desk), Some((BLOCK_M, 0.0)));
 }
 
+/// The block is there, the first touch on it is made, and the arm hovers above the last one: both.
+fn both_on_the_block(desk: &mut Desk) -> [TouchOrder; 2] {
+    asked_for_the_block(desk);
+    desk.apply(done(BLOCK_M));
+    let first = desk.order().expect("on the block");
+    desk.touch(&first);
+    let last = desk.order().expect("the last one");
+    desk.robot.measured = last.lower.first().cloned();
+    [first, last]
+}
+
 fn waits_for(desk: &Desk) -> Option<(f64, f64)> {
     match desk.view().phase {
         TouchPhase::Waiting { prepare, .. } => prepare,
@@ -231,12 +242,7 @@ fn where_no_way_leads_home_it_is_said_what_to_do() {
 fn a_run_that_is_stopped_at_its_end_on_a_block_pauses_and_is_not_over() {
     let folder = folder();
     let mut desk = Desk::new(folder.path());
-    asked_for_the_block(&mut desk);
-    desk.apply(done(BLOCK_M));
-    let order = desk.order().expect("on the block");
-    desk.touch(&order);
-    let order = desk.order().expect("the last one");
-    desk.robot.measured = order.lower.first().cloned();
+    let [_, order] = both_on_the_block(&mut desk);
     desk.robot.stopped = true;
     desk.touch(&order);
     assert!(paused(&desk).contains("STOP"), "{}", paused(&desk));
@@ -251,12 +257,7 @@ fn a_run_that_is_stopped_at_its_end_on_a_block_pauses_and_is_not_over() {
 fn a_touch_that_is_to_be_made_again_is_made_before_a_run_that_was_to_end() {
     let folder = folder();
     let mut desk = Desk::new(folder.path());
-    asked_for_the_block(&mut desk);
-    desk.apply(done(BLOCK_M));
-    let order = desk.order().expect("on the block");
-    desk.touch(&order);
-    let second = desk.order().expect("the last one");
-    desk.robot.measured = second.lower.first().cloned();
+    let [order, second] = both_on_the_block(&mut desk);
     desk.apply(TouchCommand::Finish);
     desk.say(&second, TouchRun::Missed("broken off".to_owned()));
     let away = desk.withdrawal().expect("away");
