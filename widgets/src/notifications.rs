@@ -233,15 +233,15 @@ fn toast(ui: &mut Ui, notification: &Notification) -> ToastAsked {
         ui.horizontal_top(|ui| {
             severity_sign(ui, notification.severity);
             let close = 64.0;
-            ui.allocate_ui(vec2(WIDTH - 30.0 - close - space::S, 0.0), |ui| {
-                ui.add(
-                    egui::Label::new(RichText::new(notification.words()).color(tokens.text_strong)).wrap(),
-                );
-            });
+            let words = RichText::new(notification.words()).color(tokens.text_strong);
+            let words = egui::Label::new(words).wrap().selectable(false).sense(egui::Sense::click());
+            // What it covers is one press away, wherever that goes.
+            let size = vec2(WIDTH - 30.0 - close - space::S, 0.0);
+            let pressed = ui.allocate_ui(size, |ui| ui.add(words).clicked()).inner;
             ui.with_layout(egui::Layout::top_down(egui::Align::Max), |ui| {
                 let dismissed = ui.add(egui::Button::new(theme::small(ui, "Dismiss")).frame(false)).clicked();
                 let opened = notification.file.is_some() && ui.button("Open").clicked();
-                ToastAsked { dismissed, opened }
+                ToastAsked { dismissed: dismissed || pressed, opened }
             })
             .inner
         })

@@ -152,7 +152,7 @@ fn one(text: &mut String, effect: &NamedEffect, candidates: &[Candidate]) {
     ));
     for found in told {
         let said = match &found.text {
-            Some(text) => words::effect::choice(text),
+            Some(text) => words::effect::choice(text, candidates),
             None => format!(
                 "{} ({}, 95 %)",
                 parameter::value(&found.name, found.value),

@@ -16,8 +16,8 @@ pub mod words;
 pub use actions::{
     Action, CommissionAction, DetectAction, GapAction, GraspAction, GridAction, HandEyeAction, LabelsAction,
     ModelsAction, MountAction, Preset, RobotAction, ScoresAction, TimelineAction, TouchAction, TrialsAction,
-    USUAL_THING, default_scenario, format_name, gap_plan, gap_proof, is_under_way, needs_window, screen_of,
-    usual_area,
+    USUAL_THING, default_scenario, format_name, gap_plan, gap_proof, is_under_way, led_by, needs_window,
+    screen_of, usual_area,
 };
 pub use gamepad::{GamepadState, STOP_BUTTONS};
 pub use guidance::{

@@ -1,9 +1,10 @@
 //! Which board is used, counted in squares as people count, and how to solve.
 
-use egui::{DragValue, Ui};
+use egui::Ui;
 use plumbline_engine::EyesCommand;
 use plumbline_engine::view::EyesView;
 use plumbline_model::ModelKind;
+use plumbline_widgets::NumberField;
 use plumbline_widgets::buttons::choice;
 use plumbline_widgets::theme::{self, Role, space};
 
@@ -58,10 +59,10 @@ fn squares(ui: &mut Ui, edited: &mut BoardDraft) {
 }
 
 fn side(ui: &mut Ui, edited: &mut BoardDraft) {
-    let side = DragValue::new(&mut edited.square_mm).range(1.0..=1000.0).speed(0.1).suffix(" mm");
-    let side = ui.add(side.max_decimals(3).min_decimals(0));
-    side.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, "Side of a square"));
-    side.on_hover_text("Measure several squares with a ruler and divide: all lengths rest on it");
+    let side =
+        NumberField { name: "Side of a square", range: 1.0..=1000.0, suffix: " mm", speed: 0.1, decimals: 3 };
+    side.show(ui, &mut edited.square_mm)
+        .on_hover_text("Measure several squares with a ruler and divide: all lengths rest on it");
 }
 
 /// What comes of the numbers, and what is seen.
@@ -99,8 +100,9 @@ fn chosen(ui: &mut Ui, cx: &mut PanelContext<'_>, draft: BoardDraft, edited: Boa
 }
 
 fn number(ui: &mut Ui, label: &str, value: &mut u32) {
-    let drag = ui.add(DragValue::new(value).range(2..=41).speed(0.05)).on_hover_text(label);
-    drag.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, label));
+    NumberField { name: label, range: 2..=41, suffix: "", speed: 0.05, decimals: 0 }
+        .show(ui, value)
+        .on_hover_text(label);
 }
 
 /// What a search for any board found, when that differs from what is looked for.

@@ -3,10 +3,11 @@
 
 use std::path::PathBuf;
 
-use egui::{Align2, DragValue, TextEdit, Ui, Vec2};
+use egui::{Align2, TextEdit, Ui, Vec2};
 use plumbline_engine::{
     CameraDevice, EyesCommand, LabelsCommand, RobotCommand, SourceCommand, SourceSpec, View,
 };
+use plumbline_widgets::NumberField;
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, space};
 
@@ -167,7 +168,9 @@ fn cameras(ui: &mut Ui, view: &View, left: &mut u32, right: &mut u32) -> Asked {
         for (name, number) in [("Left eye", &mut *left), ("Right eye", &mut *right)] {
             let label = ui.label(name);
             if devices.is_empty() {
-                ui.add(DragValue::new(number).range(0..=63)).labelled_by(label.id);
+                NumberField { name, range: 0..=63, suffix: "", speed: 0.25, decimals: 0 }
+                    .show(ui, number)
+                    .labelled_by(label.id);
             } else {
                 let shown = device_text(&devices, *number);
                 egui::ComboBox::from_id_salt(name).width(260.0).selected_text(shown).show_ui(ui, |ui| {

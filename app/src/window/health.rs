@@ -2,11 +2,12 @@
 
 use std::time::Duration;
 
-use egui::{Align, Button, DragValue, Layout, Panel, Popup, Response, Ui};
+use egui::{Align, Button, Layout, Panel, Popup, Response, Ui};
 use jiff::Timestamp;
 use plumbline_engine::view::{RecordingState, SourceStatus, StepState};
 use plumbline_engine::{EyesCommand, View};
 use plumbline_model::duration;
+use plumbline_widgets::NumberField;
 use plumbline_widgets::buttons::{STOP_SIZE, stop_button, stop_pressed};
 use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::key_value::{KeyValue, key_value_grid};
@@ -15,6 +16,7 @@ use plumbline_widgets::theme::{self, space};
 
 use super::lamps::{Then, TopLamp};
 use super::{PlumblineWindow, faults, lamps, robot_lamps, running_lamp, world_menu};
+use crate::operator::words::eyes::WARM_AFTER_MINUTES;
 use crate::operator::{Action, Outbox, RobotAction, Screen, shortcut_text};
 use crate::panels::source_age;
 
@@ -27,7 +29,6 @@ const LAMPS_HEIGHT: f32 = 30.0;
 /// A live picture older than this is worth a warning.
 const OLD: Duration = Duration::from_millis(500);
 /// Lenses move while the cameras get warm; after this long they have settled.
-const WARM_AFTER_MINUTES: f64 = 20.0;
 
 pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
     let width = ui.available_width();
@@ -244,7 +245,9 @@ fn model_lamp(view: &View) -> Option<TopLamp> {
         return None;
     }
     let (health, reason) = standing(&gap.step);
-    let value = gap.model.name.to_string();
+    // The lamp has little room; its screen says all of it.
+    let name = gap.model.name.trim_start_matches("nominal + ");
+    let value = name.trim_end_matches(" and small shares").to_owned();
     Some(TopLamp { name: "Model", value, health, reason, then: Then::Go(Screen::Gap) })
 }
 
@@ -297,12 +300,14 @@ fn minutes_field(ui: &mut Ui, label: &Response, minutes_on: Option<f64>) -> Opti
     let draft = label.id.with("draft");
     let held: Option<(f64, bool)> = ui.data(|data| data.get_temp(draft));
     let (mut minutes, was_dragged) = held.unwrap_or((minutes_on.map_or(0.0, f64::round), false));
-    let drag = DragValue::new(&mut minutes)
-        .range(0.0..=10_000.0)
-        .max_decimals(0)
-        .suffix(" min")
-        .update_while_editing(false);
-    let response = ui.add(drag).labelled_by(label.id);
+    let field = NumberField {
+        name: "Minutes since on",
+        range: 0.0..=10_000.0,
+        suffix: " min",
+        speed: 1.0,
+        decimals: 0,
+    };
+    let response = field.show(ui, &mut minutes).labelled_by(label.id);
     let (dragged, changed) = (response.dragged(), response.changed());
     if dragged || response.has_focus() {
         ui.data_mut(|data| data.insert_temp(draft, (minutes, dragged && (was_dragged || changed))));

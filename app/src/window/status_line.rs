@@ -1,7 +1,7 @@
 //! The bottom line: what is happening and what to do next, with the one button that does it.
 
 use egui::{Align, Layout, Panel, Ui};
-use plumbline_engine::view::{JobState, JobView, MotionState, TouchPhase, TrialsPhase};
+use plumbline_engine::view::{JobState, JobView, MotionState};
 use plumbline_engine::{JobCommand, View};
 use plumbline_widgets::buttons::accent_button;
 use plumbline_widgets::progress::{ProgressAction, ProgressLine};
@@ -9,7 +9,9 @@ use plumbline_widgets::theme::space;
 
 use super::PlumblineWindow;
 use crate::operator::guidance::{Guidance, failed_inside, guidance};
-use crate::operator::{Action, Course, GraspAction, Outbox, Screen, TouchAction, course, shortcut_text};
+use crate::operator::{
+    Action, Course, GraspAction, Outbox, Screen, TouchAction, course, led_by, shortcut_text,
+};
 
 const HEIGHT: f32 = 52.0;
 
@@ -154,12 +156,7 @@ fn next_button(view: &View, guidance: &Guidance, look: Look, ui: &mut Ui, outbox
 /// Whether something moves the robot, or goes on moving it by itself.
 pub(super) fn moves(view: &View) -> bool {
     // The evaluation on a grid is none of them: only things are laid, by a person or in the twin.
-    matches!(view.touch.phase, TouchPhase::Waiting { .. } | TouchPhase::Running { .. })
-        || view.grasp.phase.moves()
-        || matches!(view.trials.phase, TrialsPhase::Running { .. })
-        || view.mount.tour.is_some()
-        || view.handeye.is_looking
-        || matches!(view.robot.motion, MotionState::Moving { .. })
+    led_by(view).is_some() || matches!(view.robot.motion, MotionState::Moving { .. })
 }
 
 fn failed_job(view: &View) -> Option<(&JobView, &str)> {

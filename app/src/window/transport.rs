@@ -1,8 +1,9 @@
 //! Playing a recording.
 
-use egui::{Button, DragValue, Panel, Slider, Ui};
+use egui::{Button, Panel, Slider, Ui};
 use plumbline_engine::view::{Growth, ReplayView, SourceStatus};
 use plumbline_engine::{SourceCommand, View};
+use plumbline_widgets::NumberField;
 use plumbline_widgets::theme::{self, space};
 
 use crate::operator::{Action, Outbox, shortcut_text};
@@ -55,10 +56,14 @@ fn contents(ui: &mut Ui, view: &View, replay: ReplayView, outbox: &mut Outbox) {
             outbox.send(SourceCommand::Follow(followed));
         }
         let mut rate = replay.pairs_per_second.unwrap_or(30.0);
-        let drag = DragValue::new(&mut rate).range(0.2..=120.0).speed(0.2).max_decimals(1).suffix(" pairs/s");
-        let drag = ui.add(drag).on_hover_text("Speed: drag, or click to type");
-        drag.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, "Pairs per second"));
-        if drag.changed() {
+        let field = NumberField {
+            name: "Pairs per second",
+            range: 0.2..=120.0,
+            suffix: " pairs/s",
+            speed: 0.2,
+            decimals: 1,
+        };
+        if field.show(ui, &mut rate).on_hover_text("Speed: drag, or click to type").changed() {
             outbox.send(SourceCommand::PairsPerSecond(rate));
         }
     });

@@ -107,7 +107,7 @@ fn cold_eyes_are_warmed_then_shown_the_board() {
     let mut view = at(CommissionStep::Eyes);
     Arc::make_mut(&mut view.twin).eyes_on_s = 10.0;
     let (_, _, sent) = press(view);
-    assert_eq!(sent, [Command::from(TwinCommand::AdvanceWarmUp { minutes: 10.0 })]);
+    assert_eq!(sent, [Command::from(TwinCommand::AdvanceWarmUp { minutes: 20.0 })]);
 
     let (label, window, sent) = press(at(CommissionStep::Eyes));
     assert_eq!(label, "Next: show the board at 12 places");
@@ -331,7 +331,7 @@ fn hands_are_not_looked_at_with_cold_eyes_unwarned() {
     // Eyes of the twin get warm at a press.
     Arc::make_mut(&mut view.eyes).health.colder_wait_min = Some(10.0);
     let (label, window, sent) = press(view);
-    assert_eq!(label, "Next: warm the twin's eyes by 10 minutes");
+    assert_eq!(label, "Next: warm the twin's eyes up");
     assert_eq!(sent, [Command::from(TwinCommand::AdvanceWarmUp { minutes: 10.0 })]);
     assert!(says(&window, "Warming moves nothing"));
 }

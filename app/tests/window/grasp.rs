@@ -8,8 +8,8 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use nalgebra::Point3;
 use plumbline::{PlumblineWindow, Screen, WindowSettings};
 use plumbline_engine::view::{
-    BetweenSteps, GraspHand, GraspMethod, GraspPhase, GraspRun, GraspStep, GraspView, LampState, MotionState,
-    RobotView,
+    BetweenSteps, DetectView, GraspHand, GraspMethod, GraspPhase, GraspRun, GraspStep, GraspView, LampState,
+    MotionState, ObjectView, RobotView,
 };
 use plumbline_engine::{Command, GraspCommand, GraspTarget, View};
 use plumbline_model::frame::Point;
@@ -17,6 +17,7 @@ use plumbline_widgets::scene3d::SceneCamera;
 
 use crate::fake::{Fake, click, says, shows};
 use crate::made_up::{connected, everything};
+use crate::made_up_objects;
 
 /// In front of everything else for who looks at the scene from where it is looked at first, m.
 const TOMATO_M: [f64; 3] = [0.55, -0.25, 0.084];
@@ -59,6 +60,27 @@ fn the_switch_stands_beside_the_buttons_also_while_a_grasp_is_under_way() {
         click(&mut window, "Stop after each step");
         assert_eq!(fake.take_sent(), [Command::from(GraspCommand::StopAfterEachStep(!on))]);
     }
+}
+
+#[test]
+fn who_can_hold_nothing_of_what_is_there_is_told_so_and_not_ready() {
+    let with_seen = |objects: Vec<ObjectView>| {
+        let found = Some(Arc::new(made_up_objects::found(objects)));
+        let detect = Arc::new(DetectView { found, ..made_up_objects::detect() });
+        let grasp = GraspView { classes: Arc::from(["Tomato", "Onion"]), ..GraspView::default() };
+        View { detect, twin: Arc::default(), ..with(grasp) }
+    };
+    let says_ready = |objects: Vec<ObjectView>, words: &str| {
+        let window = on_grasp(&Fake::over(with_seen(objects)));
+        assert!(says(&window, words), "{words}");
+        says(&window, "Ready.")
+    };
+    let (tomato, banana, hand) = (made_up_objects::tomato, made_up_objects::banana, made_up_objects::hand);
+    assert!(says_ready(vec![tomato(), banana()], "Ready."));
+    assert!(!says_ready(vec![banana(), hand()], "The hands cannot hold: banana. They hold: "));
+    assert!(!says_ready(vec![hand()], "Nothing to grasp is seen."));
+    let unplaced = ObjectView { place: banana().place, ..tomato() };
+    assert!(!says_ready(vec![unplaced, banana()], "Seen, but not where on the table: tomato."));
 }
 
 #[test]

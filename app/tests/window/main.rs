@@ -22,6 +22,7 @@ mod made_up_objects;
 mod made_up_touch;
 mod models;
 mod mount;
+mod numbers;
 mod objects;
 mod pictures;
 mod raw_ids;

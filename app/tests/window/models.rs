@@ -89,8 +89,6 @@ fn too_few_touches_for_a_network_are_said_before_anything_is_trained() {
     let fake = Fake::over(with(ModelsView { data: Some(Ok(Arc::new(few))), ..recorded() }));
     let mut window = fake.window_of_size(on_models(), TALL);
     assert!(says(&window, "15 touches are too few for M2 and M3, which need 20"));
-    click(&mut window, "M2");
-    click(&mut window, "M3");
     click(&mut window, "Train M1 on 15 touches");
     let m1 = ModelsCommand::Train { methods: vec![Method::M1], seed: 1, published_recipe: false };
     assert_eq!(models(&fake), [m1]);

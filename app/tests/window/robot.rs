@@ -1,12 +1,15 @@
 //! The robot: nothing moves that was not shown and asked for, and STOP always gets through.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use plumbline::{PlumblineWindow, Screen, ThemeChoice, WindowSettings};
-use plumbline_engine::view::{BusView, Connection, InTheWay, MotionState, PortView, RobotView};
+use plumbline_engine::view::{
+    BusView, Connection, InTheWay, MotionState, PortView, RobotView, TouchPhase, TouchView,
+};
 use plumbline_engine::{Command, Destination, RobotCommand, View};
 
 use crate::fake::{Fake, click, says, shows};
@@ -160,6 +163,16 @@ fn a_held_jog_key_is_renewed_and_released_at_once() {
     window.event(egui::Event::ModifiersChanged(Modifiers::NONE));
     window.run_steps(2);
     assert_eq!(robot_commands(&fake).last(), Some(&RobotCommand::EndJog));
+}
+
+#[test]
+fn an_arm_that_a_run_moves_is_not_jogged_and_the_pad_says_why() {
+    let touch =
+        TouchView { phase: TouchPhase::Running { number: 3, doing: String::new() }, ..TouchView::default() };
+    let fake = Fake::over(View { touch: Arc::new(touch), ..everything() });
+    let window = fake.window(on_robot());
+    assert!(says(&window, "touches move the arm: pause them first"));
+    assert!(!says(&window, "Hold to move"));
 }
 
 #[test]

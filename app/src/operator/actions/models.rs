@@ -162,6 +162,12 @@ pub fn training_refusal(view: &View, methods: &[Method]) -> Option<Cow<'static, 
     }
 }
 
+/// Why a method has too few touches to learn from; `None`: it has enough, or it is not known how many there are.
+pub fn too_few_for(view: &View, method: Method) -> Option<String> {
+    let touches = view.models.data.as_ref()?.as_ref().ok()?.len();
+    (method != Method::M1 && touches < FEWEST_FOR_A_NETWORK).then(|| too_few(touches))
+}
+
 /// Why touches do for M1 alone.
 pub fn too_few(touches: usize) -> String {
     format!(

@@ -2,9 +2,11 @@
 
 use std::borrow::Cow;
 
-use plumbline_engine::view::{Connection, MotionState, StepState};
+use plumbline_engine::view::{Connection, MotionState, StepState, TouchPhase, TrialsPhase};
 use plumbline_engine::{Command, MountCommand, RobotCommand, SourceCommand, SourceSpec, TwinCommand, View};
 use serde::Serialize;
+
+use crate::operator::words::eyes::WARM_AFTER_MINUTES;
 
 /// Of the robot and its twin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -46,7 +48,7 @@ pub enum RobotAction {
     LayBoard,
     /// Puts the board away.
     HideBoard,
-    /// Lets the eyes warm up by ten minutes.
+    /// Lets the eyes warm up, as far as it takes.
     WarmUp,
     /// Cold eyes.
     CoolEyes,
@@ -136,7 +138,7 @@ impl RobotAction {
             Self::SkipPlace => "Skip this place",
             Self::LayBoard => "Lay the board on the table",
             Self::HideBoard => "Put the board away",
-            Self::WarmUp => "Warm the twin's eyes by 10 minutes",
+            Self::WarmUp => "Warm the twin's eyes up",
             Self::CoolEyes => "Cool the twin's eyes",
             Self::ResetTwin => "Put the twin's table back",
         }
@@ -219,10 +221,30 @@ impl RobotAction {
                 TwinCommand::LayBoard { x_m, y_m, yaw_rad: BOARD_TURN_RAD }.into()
             }
             Self::HideBoard => TwinCommand::HideBoard.into(),
-            Self::WarmUp => TwinCommand::AdvanceWarmUp { minutes: 10.0 }.into(),
+            Self::WarmUp => TwinCommand::AdvanceWarmUp { minutes: to_be_warm_min(view) }.into(),
             Self::CoolEyes => TwinCommand::CoolEyes.into(),
             Self::ResetTwin => TwinCommand::Reset.into(),
         })
+    }
+}
+
+/// By how much the twin's eyes have to warm up: until they are as warm as when they were calibrated, else as warm as
+/// they get, min.
+fn to_be_warm_min(view: &View) -> f64 {
+    let until_warm = WARM_AFTER_MINUTES - view.twin.eyes_on_s / 60.0;
+    view.eyes.health.colder_wait_min.unwrap_or(until_warm).ceil().max(1.0)
+}
+
+/// What moves the robot by itself just now, so that nobody moves it by hand; `None`: nothing does.
+pub fn led_by(view: &View) -> Option<&'static str> {
+    if matches!(view.touch.phase, TouchPhase::Waiting { .. } | TouchPhase::Running { .. }) {
+        Some("touches move the arm: pause them first")
+    } else if view.grasp.phase.moves() || matches!(view.trials.phase, TrialsPhase::Running { .. }) {
+        Some("a grasp moves the arm: pause it first")
+    } else if view.mount.tour.is_some() || view.handeye.is_looking {
+        Some("the robot moves to be looked at: wait for the end, or cancel it")
+    } else {
+        None
     }
 }
 
@@ -234,6 +256,9 @@ fn move_refusal(view: &View) -> Refusal {
     }
     if robot.stopped {
         return Some("STOP is latched: release it first".into());
+    }
+    if let Some(why) = led_by(view) {
+        return Some(why.into());
     }
     if matches!(robot.motion, MotionState::Moving { .. }) {
         return Some("the robot is moving".into());

@@ -186,6 +186,19 @@ fn collect(view: &View) -> Guidance {
     let twin = &view.twin;
     let toured = twin.running && (twin.board.is_none() || twin.board_places_left > 0);
     let enough = count >= ENOUGH_PAIRS && (eyes.ghost.is_none() || toured);
+    if eyes.is_solved_in_use {
+        let said = format!(
+            "The calibration in use was solved from {}.",
+            match count {
+                1 => "this pair".to_owned(),
+                _ => format!("these {}", format::count(count, "pair")),
+            }
+        );
+        return onward::after_the_eyes(view, &said).unwrap_or_else(|| {
+            say(format!("{said} Collect more only to solve again."))
+                .then("Go to Live", Action::Go(Screen::Live))
+        });
+    }
     if enough || view.source.replay.is_some() || view.source.status == SourceStatus::None {
         let said = if count < ENOUGH_PAIRS {
             format!("{}: {ENOUGH_PAIRS} or more are better.", format::count(count, "pair"))

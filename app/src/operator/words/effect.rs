@@ -55,9 +55,12 @@ pub fn moved(effect: &AddedEffect) -> Option<String> {
     Some(format!("{small}{what} {moved_m}"))
 }
 
-/// What a parameter chooses, in words: a joint, or one of two things.
-pub fn choice(text: &str) -> String {
-    parameter_words::place(text)
+/// What a parameter chooses, in words: a joint, as those that were tried call it, or one of two things.
+pub fn choice(text: &str, candidates: &[Candidate]) -> String {
+    let of_joint = candidates.iter().filter(|candidate| candidate.site == text);
+    let whose =
+        of_joint.filter_map(|candidate| candidate.title.split_once(": ")).map(|(whose, _)| whose).next();
+    whose.map_or_else(|| parameter_words::place(text), lower)
 }
 
 /// How much less probable the runner-up is: "200 times less probable".
@@ -89,7 +92,7 @@ fn lower(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use crate::operator::snapshot::gap::sample;
+    use crate::operator::snapshot::gap::{Knowledge, sample};
 
     use super::*;
 
@@ -123,8 +126,17 @@ mod tests {
 
     #[test]
     fn a_choice_is_no_raw_joint() {
-        assert_eq!(choice("r_shoulder_y"), "right shoulder y");
-        assert_eq!(choice("distance of the eyes"), "distance of the eyes");
+        assert_eq!(choice("r_shoulder_y", &[]), "right shoulder y");
+        assert_eq!(choice("distance of the eyes", &[]), "distance of the eyes");
+        let known = Candidate {
+            id: "joint-zero".to_owned(),
+            site: "r_shoulder_y".to_owned(),
+            title: "Right shoulder turn: zero position off".to_owned(),
+            probability: 0.5,
+            score_sigmas: 3.0,
+            knowledge: Knowledge::Known,
+        };
+        assert_eq!(choice("r_shoulder_y", &[known]), "right shoulder turn");
     }
 
     #[test]

@@ -4,7 +4,7 @@ use plumbline_engine::view::EyesView;
 use plumbline_model::counted;
 
 /// Housings are about as warm as they get so long after the eyes were switched on, min.
-const WARM_AFTER_MINUTES: f64 = 20.0;
+pub const WARM_AFTER_MINUTES: f64 = 20.0;
 
 /// How long the eyes had been on when a collected pair was taken, min; `None`: nobody knows.
 pub fn minutes_on(eyes: &EyesView, pair: &str) -> Option<f64> {

@@ -150,7 +150,7 @@ fn card(ui: &mut Ui, cx: &mut PanelContext<'_>, shown: &ShownFinding, i: usize) 
             let text = in_model(cx.view, effect);
             ui.label(RichText::new(text).color(Role::Accepted.color(tokens)));
         }
-        sizes(ui, effect, &shown.finding.shown);
+        sizes(ui, effect, &shown.finding);
         let is_weak = shown.finding.verdict == Verdict::NotInLibrary || shown.finding.many.is_some();
         let role = if is_weak { Role::Weak } else { Role::Predicted };
         if effect.class.len() > 1 {

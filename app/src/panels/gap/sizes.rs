@@ -4,7 +4,7 @@ use egui::{Grid, Label, RichText, TextStyle, Ui};
 use plumbline_widgets::theme::{self, space};
 use plumbline_widgets::{format, parameter};
 
-use crate::operator::snapshot::gap::{NamedEffect, Shown};
+use crate::operator::snapshot::gap::{Finding, NamedEffect};
 use crate::operator::words::effect as effect_words;
 use crate::operator::words::gap as words;
 
@@ -15,7 +15,7 @@ const ROW_GAP: f32 = 4.0;
 type Row = [RichText; 3];
 
 /// Parameters whose intervals exclude zero, the others counted, and what the effect does on the table.
-pub fn sizes(ui: &mut Ui, effect: &NamedEffect, shown: &Shown) {
+pub fn sizes(ui: &mut Ui, effect: &NamedEffect, finding: &Finding) {
     let (told, zero): (Vec<_>, Vec<_>) = effect.parameters.iter().partition(|found| found.is_told());
     let not_told = effect_words::not_told(told.len(), zero.len());
     let mut rows: Vec<Row> = told
@@ -23,7 +23,9 @@ pub fn sizes(ui: &mut Ui, effect: &NamedEffect, shown: &Shown) {
         .map(|found| {
             let name = theme::weak(ui, parameter::words(&found.name));
             match &found.text {
-                Some(text) => [name, RichText::new(effect_words::choice(text)), RichText::new("")],
+                Some(text) => {
+                    [name, RichText::new(effect_words::choice(text, &finding.candidates)), RichText::new("")]
+                }
                 None => {
                     let interval = parameter::interval(&found.name, found.low, found.high);
                     let value = theme::strong(ui, parameter::value(&found.name, found.value));
@@ -35,7 +37,11 @@ pub fn sizes(ui: &mut Ui, effect: &NamedEffect, shown: &Shown) {
     if effect.size_m > 0.0 {
         let sigmas = format::significant(effect.size_sigmas, 2);
         let noise = theme::weak(ui, format!("rms, {sigmas} × the noise"));
-        rows.push([theme::weak(ui, "does"), RichText::new(words::error(shown, effect.size_m)), noise]);
+        rows.push([
+            theme::weak(ui, "does"),
+            RichText::new(words::error(&finding.shown, effect.size_m)),
+            noise,
+        ]);
     }
     if fits(ui, &rows) {
         beside(ui, effect, rows);

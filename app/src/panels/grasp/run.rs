@@ -1,12 +1,12 @@
 //! The pane of the work: what and how, gates, lamps, result, and every step by itself.
 
 use egui::{RichText, ScrollArea, Slider, Ui};
-use plumbline_engine::view::{FULL_HAND, GateState, GraspPhase, GraspView};
+use plumbline_engine::view::{FULL_HAND, GateState, GraspPhase};
 use plumbline_engine::{GraspCommand, HandStep, View};
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, Role, space};
 
-use super::{aligned, choice, lamps, result};
+use super::{aligned, choice, lamps, result, things};
 use crate::operator::GraspAction;
 use crate::operator::words::capitalized;
 use crate::operator::words::grasp::{again, go_on, hand as hand_words, holds, try_of};
@@ -37,7 +37,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
                 ui.add_space(space::S);
             }
             planned(ui, cx);
-            gates(ui, &cx.view.grasp);
+            gates(ui, cx.view);
             ui.add_space(space::S);
             hand(ui, cx);
         });
@@ -104,14 +104,18 @@ fn doing(view: &View) -> String {
 
 /// What keeps anything from moving; when nothing does and nothing else is shown, one word. Notes stand in
 /// the inspector, and of what is in the hand the bottom line tells, with its button.
-fn gates(ui: &mut Ui, grasp: &GraspView) {
+fn gates(ui: &mut Ui, view: &View) {
+    let grasp = &view.grasp;
     if grasp.phase != GraspPhase::Idle {
         return;
     }
     let tokens = theme::tokens(ui);
     if grasp.trouble().is_none() && grasp.run.is_none() {
         match grasp.gates.iter().find(|gate| gate.state == GateState::Doubtful) {
-            None => ui.label(RichText::new("Ready.").color(Role::Accepted.color(tokens))),
+            None => match things::nothing_to_hold(view) {
+                Some(why) => ui.label(theme::weak(ui, why)),
+                None => ui.label(RichText::new("Ready.").color(Role::Accepted.color(tokens))),
+            },
             Some(doubt) => {
                 let text = format!("Ready, in doubt: {}", doubt.text);
                 ui.label(RichText::new(text).color(Role::Warning.color(tokens)))

@@ -88,6 +88,29 @@ fn things(view: &View) -> Vec<SceneThing> {
     seen.iter().cloned().chain(toys).collect()
 }
 
+/// What keeps a grasp without a thing: nothing is seen, or nothing that a hand can hold. `None`: there is one.
+pub fn nothing_to_hold(view: &View) -> Option<String> {
+    if !things(view).is_empty() {
+        return None;
+    }
+    let mut seen: Vec<&str> = found(view).iter().map(|object| object.name.as_str()).collect();
+    seen.retain(|name| !name.ends_with("Hand"));
+    seen.sort_unstable();
+    seen.dedup();
+    let is_held = |name: &&str| view.grasp.classes.iter().any(|class| class.eq_ignore_ascii_case(name));
+    let (without_place, not_held): (Vec<&str>, Vec<&str>) = seen.into_iter().partition(is_held);
+    let listed = |names: &[&str]| plumbline_model::listed(names).to_lowercase();
+    Some(match (without_place.is_empty(), not_held.is_empty()) {
+        (false, _) => format!("Seen, but not where on the table: {}.", listed(&without_place)),
+        (true, false) => format!(
+            "The hands cannot hold: {}. They hold: {}.",
+            listed(&not_held),
+            listed(&view.grasp.classes)
+        ),
+        (true, true) => "Nothing to grasp is seen.".to_owned(),
+    })
+}
+
 fn place_m(object: &ObjectView) -> Option<Point3<f64>> {
     object.best_place().ok().map(|place| place.point_in_robot.coords)
 }

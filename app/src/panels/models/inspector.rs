@@ -39,7 +39,7 @@ pub fn show(ui: &mut Ui, view: &View, _state: &mut PanelState, _outbox: &mut Out
         );
     }
     if let Some(options) = &from.options {
-        let recipe = if options.recipe == Recipe::Published { "as published" } else { "ours" };
+        let recipe = if options.recipe == Recipe::Published { "as published" } else { "Plumbline's" };
         rows.push(KeyValue::text("recipe", recipe));
         rows.push(KeyValue::text("seed", options.seed.to_string()));
     }

@@ -1,8 +1,9 @@
 //! Training: from which touches, which methods, how; and how it goes.
 
-use egui::{Button, DragValue, Ui, vec2};
+use egui::{Button, Checkbox, Ui, vec2};
 use plumbline_engine::ModelsCommand;
 use plumbline_engine::view::{JobState, ModelsView};
+use plumbline_widgets::NumberField;
 use plumbline_widgets::buttons::choice;
 use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::format::{self, Quantity};
@@ -11,7 +12,7 @@ use plumbline_widgets::theme::{self, Role, space};
 
 use super::parts::about;
 use super::sessions;
-use crate::operator::actions::training_refusal;
+use crate::operator::actions::{too_few_for, training_refusal};
 use crate::operator::snapshot::models::{LossPoint, Method};
 use crate::operator::{Action, Screen};
 use crate::panels::{PanelContext, padded};
@@ -50,7 +51,12 @@ fn methods(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     ui.spacing_mut().item_spacing.y = 2.0;
     for (i, method) in Method::ALL.into_iter().enumerate() {
         ui.horizontal(|ui| {
-            ui.checkbox(&mut cx.state.models.methods[i], method.name());
+            let too_few = too_few_for(cx.view, method);
+            // What was chosen stays for a session that has enough.
+            let mut none = false;
+            let on = if too_few.is_some() { &mut none } else { &mut cx.state.models.methods[i] };
+            ui.add_enabled(too_few.is_none(), Checkbox::new(on, method.name()))
+                .on_disabled_hover_text(too_few.unwrap_or_default());
             ui.add(egui::Label::new(theme::small(ui, about(method))).truncate());
         });
     }
@@ -67,7 +73,9 @@ fn more(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         );
         ui.horizontal(|ui| {
             let label = ui.label("Seed");
-            ui.add(DragValue::new(&mut state.seed).speed(0.1)).labelled_by(label.id);
+            NumberField { name: "Seed", range: 0..=999_999_999, suffix: "", speed: 0.1, decimals: 0 }
+                .show(ui, &mut state.seed)
+                .labelled_by(label.id);
             ui.label(theme::small(ui, "the same seed gives the same models"));
         });
     });
@@ -78,7 +86,7 @@ fn button(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let chosen: Vec<Method> = Method::ALL
         .into_iter()
         .zip(cx.state.models.methods)
-        .filter_map(|(method, on)| on.then_some(method))
+        .filter_map(|(method, on)| (on && too_few_for(cx.view, method).is_none()).then_some(method))
         .collect();
     let on = match &models.data {
         Some(Ok(data)) => format!(" on {}", format::count(data.len(), "touch")),

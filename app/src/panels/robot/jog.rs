@@ -10,7 +10,7 @@ use plumbline_widgets::theme;
 use super::parts::{cannot_jog, refusal_line};
 use super::state::Asked;
 use crate::operator::words::robot::tip_title;
-use crate::operator::{GamepadState, STOP_BUTTONS};
+use crate::operator::{GamepadState, STOP_BUTTONS, led_by};
 use crate::panels::{PanelContext, padded};
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
@@ -28,7 +28,7 @@ fn contents(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
         choose_tip(ui, &view.robot, &mut |link| cx.outbox.send(RobotCommand::ChooseTip { link }));
     });
-    let why = cannot_jog(&view.robot);
+    let why = cannot_jog(&view.robot).or_else(|| led_by(view).map(Into::into));
     let tip = tip_title(&view.robot).to_lowercase();
     let pad = cx.state.robot.gamepad.clone().filter(|pad| pad.enabled && why.is_none());
     let shown = JogPad::new(&tip)

@@ -1,7 +1,8 @@
 //! The fields of a plan.
 
-use egui::{DragValue, Grid, TextEdit, Ui, WidgetInfo};
+use egui::{Grid, TextEdit, Ui, WidgetInfo};
 use plumbline_model::touch_plan::{Finger, Pattern, PlanOptions, Purpose, Sides};
+use plumbline_widgets::NumberField;
 use plumbline_widgets::buttons::choice;
 use plumbline_widgets::theme::{self, space};
 
@@ -99,17 +100,16 @@ fn area(ui: &mut Ui, cx: &PanelContext<'_>, edited: &mut PlanOptions) {
 /// counts.
 fn pixel(ui: &mut Ui, label: &str, value: &mut f64, most: f64) {
     let mut shown = value.round();
-    let drag = ui.add(DragValue::new(&mut shown).range(0.0..=most).speed(2.0).max_decimals(0));
-    drag.widget_info(|| WidgetInfo::labeled(egui::Role::SpinButton, true, label));
-    if drag.on_hover_text(label).changed() && shown != value.round() {
+    let field = NumberField { name: label, range: 0.0..=most, suffix: "", speed: 2.0, decimals: 0 };
+    if field.show(ui, &mut shown).on_hover_text(label).changed() && shown != value.round() {
         *value = shown;
     }
 }
 
 fn count(ui: &mut Ui, label: &str, value: &mut usize, range: std::ops::RangeInclusive<usize>) {
-    let drag = ui.add(DragValue::new(value).range(range).speed(0.05));
-    drag.widget_info(|| WidgetInfo::labeled(egui::Role::SpinButton, true, label));
-    drag.on_hover_text(label);
+    NumberField { name: label, range, suffix: "", speed: 0.05, decimals: 0 }
+        .show(ui, value)
+        .on_hover_text(label);
 }
 
 /// One row per pattern, switched on and off by its box.

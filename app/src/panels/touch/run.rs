@@ -180,9 +180,13 @@ fn figures(ui: &mut Ui, found: &TouchFigures) {
     let [right, near] = found.bias_m;
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(space::L, space::XS);
-        let half = (high - low) / 2.0;
-        let mean =
-            big_figure(ui, "mean error, ± 95 %", &format::mm_with(found.mean_m, half), Role::Difference);
+        // What reaches down to zero has no ± that means something.
+        let (label, mean) = if low > 0.0 {
+            ("mean error, ± 95 %", format::mm_with(found.mean_m, (high - low) / 2.0))
+        } else {
+            ("mean error, too few touches for a ±", format::mm(found.mean_m))
+        };
+        let mean = big_figure(ui, label, &mean, Role::Difference);
         mean.on_hover_text(format!(
             "Distance of touch and target in the glass over {}; between {} and {} in 95 of 100 cases",
             words::touches(found.count),
@@ -190,8 +194,10 @@ fn figures(ui: &mut Ui, found: &TouchFigures) {
             format::mm(high)
         ));
         big_figure(ui, "largest", &format::mm(found.largest_m), Role::Ink);
-        let bias = format!("{}, {}", format::mm(right), format::mm(near));
-        big_figure(ui, "bias: to the right, toward the robot", &bias, Role::Ink);
+        let bias = format!("{}, {}", format::mm(right.abs()), format::mm(near.abs()));
+        let aside = if right < 0.0 { "left" } else { "right" };
+        let along = if near < 0.0 { "away from" } else { "toward" };
+        big_figure(ui, &format!("bias: to the {aside}, {along} the robot"), &bias, Role::Ink);
         let noise = found.noise_m.map_or("—".to_owned(), format::mm);
         let label =
             if found.noise_m.is_some() { "noise floor of repeats" } else { "noise floor: no repeats" };

@@ -1,7 +1,8 @@
 //! The chessboard in the twin's world.
 
-use egui::{DragValue, Ui};
+use egui::Ui;
 use plumbline_engine::TwinCommand;
+use plumbline_widgets::NumberField;
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, space};
 
@@ -17,12 +18,10 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     if places > 0 {
         ui.horizontal_wrapped(|ui| {
             let mut place = cx.state.twin.board_place.clamp(1, places);
-            let drag =
-                DragValue::new(&mut place).range(1..=places).speed(0.1).suffix(format!(" of {places}"));
-            let drag = ui.add(drag);
-            drag.widget_info(|| {
-                egui::WidgetInfo::labeled(egui::Role::SpinButton, true, "Place of the board")
-            });
+            let suffix = format!(" of {places}");
+            let name = "Place of the board";
+            NumberField { name, range: 1..=places, suffix: &suffix, speed: 0.1, decimals: 0 }
+                .show(ui, &mut place);
             cx.state.twin.board_place = place;
             if ui.button("Hold it there").on_hover_text("A hand that nobody sees holds the board").clicked() {
                 cx.outbox.send(TwinCommand::HoldBoard { place: place - 1 });

@@ -73,6 +73,21 @@ impl RigModel {
         (named, self.contents.effects.len() - named)
     }
 
+    /// The named effects, counted for people. A name that was given to every joint is sized joint by joint: "7 effects of
+    /// 2 kinds".
+    pub fn named_in_words(&self) -> String {
+        let named = self.contents.effects.iter().filter(|effect| self.is_named(effect));
+        let mut kinds: Vec<&str> = named.map(|effect| effect.id.as_str()).collect();
+        let count = kinds.len();
+        kinds.sort_unstable();
+        kinds.dedup();
+        let effects = plumbline_model::counted(count, "effect");
+        if kinds.len() == count {
+            return effects;
+        }
+        format!("{effects} of {}", plumbline_model::counted(kinds.len(), "kind"))
+    }
+
     /// Whether nothing is added: predictions are nominal.
     pub fn is_nominal(&self) -> bool {
         self.contents.effects.is_empty()

@@ -150,8 +150,8 @@ impl RobotModel {
         match self.added.named_and_shares() {
             (0, 0) => "as described".to_owned(),
             (0, shares) => format!("with small shares of {}", effects(shares)),
-            (named, 0) => format!("with {}", effects(named)),
-            (named, _) => format!("with {} and small shares", effects(named)),
+            (_, 0) => format!("with {}", self.added.named_in_words()),
+            (_, _) => format!("with {} and small shares", self.added.named_in_words()),
         }
     }
 

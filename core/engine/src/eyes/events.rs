@@ -185,7 +185,10 @@ impl EyesWorkflow {
             |proposal: &Arc<Proposal>| Arc::ptr_eq(&proposal.calibration, &accepted.in_use.calibration);
         // A newer proposal that came meanwhile still waits for a decision.
         if self.proposal.as_ref().is_some_and(same) {
-            (self.proposal, self.solved_from) = (None, None);
+            let from = self.solved_from.take();
+            self.accepted_from =
+                from.map(|(revision, options)| (revision, options, accepted.in_use.id.clone()));
+            self.proposal = None;
         }
         // The board lies there for the mount next: what the eyes see of it then is none of their pairs.
         self.end_auto_capture(CaptureEnded::Accepted);

@@ -41,6 +41,7 @@ impl EyesWorkflow {
             solving: self.busy.solving,
             proposal: self.proposal.clone(),
             in_use: self.in_use.clone(),
+            is_solved_in_use: self.is_solved_in_use(),
             earlier: self.earlier.clone(),
             health: self.shown_health(around, now),
         }

@@ -68,6 +68,8 @@ pub struct EyesView {
     pub proposal: Option<Arc<Proposal>>,
     /// What the eyes are rectified with.
     pub in_use: Option<Arc<AcceptedCalibration>>,
+    /// Whether that was solved from the pairs that are collected, as they are.
+    pub is_solved_in_use: bool,
     /// Accepted before, newest first.
     pub earlier: Arc<[EarlierCalibration]>,
     /// Whether the calibration in use still holds, and whether the proposed one is better.
@@ -315,6 +317,7 @@ impl Default for EyesView {
             solving: None,
             proposal: None,
             in_use: None,
+            is_solved_in_use: false,
             earlier: Arc::from([]),
             health: HealthView::default(),
         }

@@ -86,6 +86,8 @@ pub struct EyesWorkflow {
     /// Collection and options that the proposal was solved from.
     pub(super) solved_from: Option<(u64, CalibrationOptions)>,
     pub(super) in_use: Option<Arc<AcceptedCalibration>>,
+    /// Collection and options that a calibration with this id was solved from, of the one accepted last.
+    pub(super) accepted_from: Option<(u64, CalibrationOptions, String)>,
     /// Whether what was accepted before has been read.
     pub(super) is_known: bool,
     pub(super) earlier: Arc<[EarlierCalibration]>,
@@ -249,6 +251,14 @@ impl EyesWorkflow {
         self.derived.coverage = Arc::new(covered);
     }
 
+    /// Whether the calibration in use was solved from the pairs that are collected, as they are.
+    pub(super) fn is_solved_in_use(&self) -> bool {
+        let (Some((revision, options, id)), Some(in_use)) = (&self.accepted_from, &self.in_use) else {
+            return false;
+        };
+        *revision == self.collection.revision() && *options == self.options && *id == in_use.id
+    }
+
     /// Says of a solved proposal that something changed since.
     fn mark_stale(&mut self) {
         let Some(proposal) = &self.proposal else { return };
@@ -307,6 +317,7 @@ impl Workflow for EyesWorkflow {
             proposal: None,
             solved_from: None,
             in_use: None,
+            accepted_from: None,
             is_known: false,
             earlier: Arc::from([]),
             busy: Busy::default(),

@@ -8,14 +8,15 @@ use plumbline_report::HistoryEntry;
 use super::view::{AddedEffect, GapModelView, ModelStep};
 use crate::rig_models;
 
-/// "nominal", "nominal + 2 effects", "nominal + 2 effects and small shares".
+/// "nominal", "nominal + 2 effects", "nominal + 7 effects of 2 kinds and small shares".
 pub fn name(model: &RigModel) -> String {
-    let counted = |n: usize| plumbline_model::counted(n, "effect");
     match model.named_and_shares() {
         (0, 0) => "nominal".to_owned(),
-        (0, shares) => format!("nominal + small shares of {}", counted(shares)),
-        (named, 0) => format!("nominal + {}", counted(named)),
-        (named, _) => format!("nominal + {} and small shares", counted(named)),
+        (0, shares) => {
+            format!("nominal + small shares of {}", plumbline_model::counted(shares, "effect"))
+        }
+        (_, 0) => format!("nominal + {}", model.named_in_words()),
+        (_, _) => format!("nominal + {} and small shares", model.named_in_words()),
     }
 }
 

@@ -98,7 +98,7 @@ impl MountWorkflow {
             return format!("{} taken. Solve the mount.", counted(self.views.len(), "view"));
         }
         if left == 0 {
-            return "Lay the board flat on the table where both eyes see all of it, then plan the head poses."
+            return "Plan the head poses. The board has to lie flat on the table, where both eyes see all of it."
                 .to_owned();
         }
         format!("Turn the head to {}. Only the head moves.", counted(left, "pose"))

@@ -52,11 +52,16 @@ fn from_capture_to_acceptance_and_over_a_restart() {
     assert_eq!((evidence.minutes_since_on, evidence.source.as_str()), (Some(12.0), "synthetic pairs"));
     assert!(proposal.depth_per_px_m.expect("stated") > 0.005);
     assert!(view.eyes.in_use.is_none(), "a proposal is not in use");
-    assert!(view.live.aim.is_none());
+    assert!(view.live.aim.is_none() && !view.eyes.is_solved_in_use);
 
     desk.apply(EyesCommand::Accept);
     let view = desk.view();
     let accepted = view.eyes.in_use.as_ref().expect("accepted").clone();
+    assert!(view.eyes.is_solved_in_use, "these pairs need not be solved again");
+    let pair = view.eyes.collected[0].name.clone();
+    desk.apply(EyesCommand::DropPair { pair: pair.clone() });
+    assert!(!desk.view().eyes.is_solved_in_use, "others of them may be");
+    desk.apply(EyesCommand::RestorePair { pair });
     assert!(view.eyes.proposal.is_none());
     assert_eq!(view.eyes.step, StepState::Done);
     assert!(view.live.aim.is_some(), "the live views are rectified with it");

@@ -7,13 +7,12 @@ use plumbline_widgets::format;
 
 use super::super::{ENOUGH_PAIRS, dropped, source_trouble, verdict};
 use super::Said;
+use crate::operator::words::eyes::WARM_AFTER_MINUTES;
 use crate::operator::words::health::not_offered;
 use crate::operator::{Action, RobotAction};
 
 /// Pairs that suffice on the way: the board is then looked at as it lies on the table.
 const SUFFICE: usize = 12;
-/// Lenses move while cameras get warm; after so long they have settled, s.
-const WARM_AFTER_S: f64 = 20.0 * 60.0;
 
 pub(super) fn said(view: &View) -> Said {
     if let Some(trouble) = source_trouble(view) {
@@ -79,10 +78,10 @@ fn twin(view: &View, again: bool) -> Said {
         let fraction = count as f64 / places.max(1) as f64;
         return Said::wait(why, Some(fraction.min(1.0)));
     }
-    if view.twin.eyes_on_s < WARM_AFTER_S && count == 0 {
+    if view.twin.eyes_on_s < 60.0 * WARM_AFTER_MINUTES && count == 0 {
         return Said::press(
             "The twin's eyes are cold, and turn in their mounts while they warm up, as real ones do. Nothing moves.",
-            "Warm the twin's eyes by 10 minutes",
+            RobotAction::WarmUp.label(),
             vec![Action::Robot(RobotAction::WarmUp)],
         );
     }

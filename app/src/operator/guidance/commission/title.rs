@@ -61,6 +61,9 @@ pub fn spent(spent: &CommissionSpent) -> String {
     format!("{minutes} min · {touches} · {}", format::count(spent.views, "view"))
 }
 
+/// More are counted.
+const MOST_EFFECTS: usize = 3;
+
 /// What came of a step: "0.11 px left over in the images".
 pub fn done_in_words(figure: &CommissionFigure) -> String {
     match figure {
@@ -74,7 +77,10 @@ pub fn done_in_words(figure: &CommissionFigure) -> String {
             "nothing is missing in the model".to_owned()
         }
         CommissionFigure::Effects(effects) => {
-            format!("{} in the model: {}", format::count(effects.len(), "effect"), effects.join(", "))
+            let counted = format::count(effects.len(), "effect");
+            let (told, more) = effects.split_at(effects.len().min(MOST_EFFECTS));
+            let and_more = if more.is_empty() { String::new() } else { format!(" and {} more", more.len()) };
+            format!("{counted} in the model: {}{and_more}", told.join(", "))
         }
         CommissionFigure::NotInLibrary => "something is missing that no known effect explains".to_owned(),
         CommissionFigure::Seen { before_m, after_m } if after_m < before_m => {

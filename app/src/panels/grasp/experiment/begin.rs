@@ -1,8 +1,9 @@
 //! What an experiment compares, before it is begun.
 
-use egui::{Button, DragValue, Ui};
+use egui::{Button, Ui};
 use plumbline_engine::view::GraspMethod;
 use plumbline_engine::{TrialsCommand, View};
+use plumbline_widgets::NumberField;
 use plumbline_widgets::buttons::choice;
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, space};
@@ -94,7 +95,9 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     });
     ui.horizontal(|ui| {
         let label = ui.label("Attempts at each");
-        ui.add(DragValue::new(&mut draft.attempts).range(1..=20)).labelled_by(label.id);
+        NumberField { name: "Attempts at each", range: 1..=20, suffix: "", speed: 0.25, decimals: 0 }
+            .show(ui, &mut draft.attempts)
+            .labelled_by(label.id);
     });
     ui.horizontal_wrapped(|ui| {
         ui.label(theme::small(ui, "Object"));

@@ -71,7 +71,10 @@ pub fn candidates(
         for row in 0..rows {
             let part = |i: usize, n: usize| i as f64 / (n - 1) as f64;
             let target = area.at(part(column, columns), part(row, rows));
-            let set = format!("part {}-{}", 3 * column / columns + 1, 2 * row / rows + 1);
+            // Rows go toward the robot.
+            let (near, aside) =
+                (["far", "near"][2 * row / rows], ["left", "middle", "right"][3 * column / columns]);
+            let set = format!("{near} {aside}");
             for (side, hold) in ways() {
                 let wanted = Wanted { hold, ..Wanted::straight(target, screen.point_at(target), side) };
                 let path = planner.plan(&wanted, &from);
