@@ -246,9 +246,9 @@ fn model_lamp(view: &View) -> Option<TopLamp> {
     }
     let (health, reason) = standing(&gap.step);
     // The lamp has little room; its screen says all of it.
-    let name = gap.model.name.trim_start_matches("nominal + ");
-    let value = name.trim_end_matches(" and small shares").to_owned();
-    Some(TopLamp { name: "Model", value, health, reason, then: Then::Go(Screen::Gap) })
+    let named = gap.model.effects.iter().filter(|effect| effect.is_named).count();
+    let value = if named > 0 { named.to_string() } else { "small shares".to_owned() };
+    Some(TopLamp { name: "Effects", value, health, reason, then: Then::Go(Screen::Gap) })
 }
 
 /// How long the cameras have been on: as said, else since the program was started.

@@ -304,8 +304,14 @@ fn touches_of_before_the_model_was_changed_prove_nothing_of_it() {
 #[test]
 fn every_state_is_drawn_at_every_size_in_both_themes() {
     let states = [nothing(), recorded(), failed(), stale(), added()];
-    let findings =
-        [sample::named(), sample::class(), sample::not_in_library(), sample::no_gap(), sample::crowded()];
+    let findings = [
+        sample::named(),
+        sample::class(),
+        sample::much(),
+        sample::not_in_library(),
+        sample::no_gap(),
+        sample::crowded(),
+    ];
     let views = states.into_iter().chain(findings.into_iter().map(found)).map(with).chain([searching()]);
     for view in views {
         for theme in [ThemeChoice::Dark, ThemeChoice::Light] {
@@ -331,6 +337,7 @@ fn pictures_of_the_states() {
         ("named", with(found(sample::named())), Some("Name and add")),
         ("candidates", with(found(sample::named())), Some("Candidates")),
         ("class", with(found(sample::class())), Some("Name and add")),
+        ("much", with(found(sample::much())), Some("Name and add")),
         ("not-in-library", with(found(sample::not_in_library())), Some("Name and add")),
         ("no-gap", with(found(sample::no_gap())), Some("Name and add")),
         ("crowded", with(found(sample::crowded())), Some("Name and add")),

@@ -34,26 +34,19 @@ const MOST_EFFECTS: usize = 3;
 /// So many of its parameters are told.
 const MOST_PARAMETERS: usize = 3;
 
-/// Where no few effects explain it: which of the names are sure, and that the others stand for what nothing tells apart.
+/// Where no few effects explain it: which of the names are sure.
 fn much(finding: &Finding) -> String {
     let is_sure = |effect: &&NamedEffect| effect.probability > SURE && effect.class.len() < 2;
     let sure: Vec<&str> =
         finding.effects.iter().filter(is_sure).map(|effect| effect.title.as_str()).collect();
     let rest = finding.effects.len() - sure.len();
     let which = match (sure.is_empty(), rest) {
-        (true, _) => "None of the names is sure: they stand for what nothing tells apart.".to_owned(),
+        (true, _) => "None of the names is sure.".to_owned(),
         (false, 0) => format!("Sure: {}.", sure.join("; ")),
-        (false, 1) => {
-            format!("Sure: {}. The other name stands for what nothing tells apart.", sure.join("; "))
-        }
-        (false, _) => {
-            format!("Sure: {}. The other {rest} names stand for what nothing tells apart.", sure.join("; "))
-        }
+        (false, 1) => format!("Sure: {}. The other name is not.", sure.join("; ")),
+        (false, _) => format!("Sure: {}. The other {rest} names are not.", sure.join("; ")),
     };
-    format!(
-        "No few effects explain the gap: more is off than these rows tell apart. {which} {}",
-        shrink(finding)
-    )
+    format!("Many things are a little off, more than these rows can tell apart. {which} {}", shrink(finding))
 }
 
 /// The effects that are not told one by one.

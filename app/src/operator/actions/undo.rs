@@ -9,7 +9,7 @@ use plumbline_engine::{
     TouchCommand, View,
 };
 
-use super::{GapAction, LabelsAction, ModelsAction};
+use super::{GapAction, LabelsAction, ModelsAction, led_by};
 use crate::operator::Screen;
 use crate::operator::words::clock;
 
@@ -97,6 +97,10 @@ fn of_any(view: &View) -> Result<Undo, NoUndo> {
 
 /// What is in use of a kind of result.
 pub fn of_result(view: &View, subject: Subject) -> Result<Undo, NoUndo> {
+    // What moves the arm just now has planned with what is in use.
+    if let Some(why) = led_by(view) {
+        return Err(why.into());
+    }
     let in_use = view.timeline.in_use.iter().find(|now| now.subject == subject);
     let what =
         in_use.map_or_else(|| format!("the {}", subject.name().to_lowercase()), |now| now.title.clone());

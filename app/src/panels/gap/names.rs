@@ -109,7 +109,7 @@ fn verdict(ui: &mut Ui, finding: &Finding) {
         }
         Verdict::Named => "",
         Verdict::Class if finding.many.is_some() => {
-            "A correction needs no names: adding these, with small shares of everything else, corrects what was measured. To repair something, ask for names first: measure with repeats, other heights, and a weight."
+            "Adding corrects the arm all the same: the names below and small shares of everything else. To repair something that is not sure, measure more first: with repeats, at other heights, with a weight."
         }
         Verdict::Class => {
             "These data fit several names equally well. Adding the most probable one corrects what was measured; the experiment says which one is right elsewhere, too."
