@@ -28,7 +28,6 @@ const TIGHT: [f32; 2] = [900.0, 1500.0];
 const LAMPS_HEIGHT: f32 = 30.0;
 /// A live picture older than this is worth a warning.
 const OLD: Duration = Duration::from_millis(500);
-/// Lenses move while the cameras get warm; after this long they have settled.
 
 pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
     let width = ui.available_width();
