@@ -281,12 +281,19 @@ fn start_refusal(view: &View) -> Refusal {
     if touch.plan.as_ref().is_none_or(|plan| plan.reachable == 0) {
         return Some("no target can be reached: choose another area".into());
     }
-    arm_refusal(view)
+    full_hand(view).or_else(|| arm_refusal(view))
+}
+
+/// A finger that touches would drop what the hand holds, onto the screen.
+fn full_hand(view: &View) -> Refusal {
+    let held = view.grasp.held.as_ref()?;
+    let (hand, object) = (held.hand.name(), held.object.to_lowercase());
+    Some(format!("the {hand} hand holds the {object}: put it down first, on the screen Grasp").into())
 }
 
 fn resume_refusal(view: &View) -> Refusal {
     match view.touch.phase {
-        TouchPhase::Paused { .. } => arm_refusal(view),
+        TouchPhase::Paused { .. } => full_hand(view).or_else(|| arm_refusal(view)),
         // Waits for the disk: writing needs no arm.
         TouchPhase::Waiting { prepare: None, .. } => None,
         _ => Some("no run is paused".into()),
@@ -297,9 +304,19 @@ fn resume_refusal(view: &View) -> Refusal {
 mod tests {
     use std::sync::Arc;
 
-    use plumbline_engine::view::{GapSession, GapView};
+    use plumbline_engine::view::{GapSession, GapView, GraspHand, GraspView, InHand, TouchView};
 
     use super::*;
+
+    #[test]
+    fn nothing_is_touched_with_a_full_hand() {
+        let held = InHand { object: "Tomato".to_owned(), hand: GraspHand::Right };
+        let grasp = Arc::new(GraspView { held: Some(held), ..GraspView::default() });
+        let touch = TouchView { phase: TouchPhase::Paused { why: None }, ..TouchView::default() };
+        let view = View { grasp, touch: Arc::new(touch), ..View::default() };
+        let why = TouchAction::Resume.refusal(&view).expect("refused");
+        assert_eq!(why, "the right hand holds the tomato: put it down first, on the screen Grasp");
+    }
 
     #[test]
     fn without_a_robot_the_reasons_are_said() {

@@ -214,10 +214,11 @@ pub fn measured(place: &ScreenPlacement) -> String {
 }
 
 /// Whether a measured place of the screen is what the operator waits for. Touches that were made for something
-/// else measure it as well: what they were made for goes first, and their place waits beside them.
+/// else measure it as well: what they were made for goes first, and their place waits beside them, also once their
+/// run is closed.
 pub fn is_screen_to_be_decided(touch: &TouchView) -> bool {
     let purpose = touch.plan.as_ref().map(|plan| plan.options.purpose);
-    let measured_for_it = matches!(purpose, Some(Purpose::PlaceScreen) | None);
+    let measured_for_it = purpose == Some(Purpose::PlaceScreen);
     touch.placement_proposal.is_some() && (touch.placement.is_none() || measured_for_it)
 }
 

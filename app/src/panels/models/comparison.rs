@@ -1,8 +1,8 @@
 //! All methods on the same held-out touches, which one is proposed, which one is in use.
 
 use egui::{Grid, RichText, ScrollArea, Ui};
-use plumbline_engine::ModelsCommand;
 use plumbline_engine::view::{ModelsView, StepState, Subject};
+use plumbline_engine::{ModelsCommand, View};
 use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::glyph::{self, Glyph};
@@ -33,10 +33,11 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             EmptyState::loading("The models are being trained.").show(ui);
             return;
         }
-        let message = Message::new(
-            "No model yet",
-            "Targets are sent as they are. Train models on touches, or import one that was trained before.",
+        let why = format!(
+            "Targets are {}. Train models on touches, or import one that was trained before.",
+            without_a_model(cx.view)
         );
+        let message = Message::new("No model yet", &why);
         if EmptyState::empty(message.button("Import a model…")).show(ui) {
             cx.outbox.act(Action::Models(ModelsAction::Import));
         }
@@ -198,7 +199,7 @@ fn in_use(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let models = &cx.view.models;
     let said = match &models.in_use {
         Some(model) => format!("In use: {}", provenance(model)),
-        None => "No model is in use: targets are sent as they are.".to_owned(),
+        None => format!("No model is in use: targets are {}.", without_a_model(cx.view)),
     };
     ui.label(said);
     ui.horizontal_wrapped(|ui| {
@@ -207,6 +208,15 @@ fn in_use(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             action_button(ui, cx, ModelsAction::UseNone, "Use none");
         }
     });
+}
+
+/// What happens to targets where no model is in use.
+fn without_a_model(view: &View) -> &'static str {
+    if view.gap.model.effects.is_empty() {
+        "sent as they are"
+    } else {
+        "corrected by the effects that were added"
+    }
 }
 
 /// "M3 of 14:02, from 80 touches".
