@@ -151,14 +151,10 @@ pub fn training_refusal(view: &View, methods: &[Method]) -> Option<Cow<'static, 
     if view.models.training {
         return Some("models are being trained".into());
     }
-    let has_network = methods.iter().any(|method| *method != Method::M1);
     match &view.models.data {
         None => Some("no session with touches is chosen".into()),
         Some(Err(why)) => Some(why.to_string().into()),
-        Some(Ok(data)) if has_network && data.len() < FEWEST_FOR_A_NETWORK => {
-            Some(too_few(data.len()).into())
-        }
-        Some(Ok(_)) => None,
+        Some(Ok(_)) => methods.iter().find_map(|method| too_few_for(view, *method)).map(Into::into),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use egui::{Grid, RichText, ScrollArea, Ui};
 use plumbline_engine::view::{ModelsView, StepState, Subject};
-use plumbline_engine::{ModelsCommand, View};
+use plumbline_engine::{Correction, ModelsCommand, View};
 use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::glyph::{self, Glyph};
@@ -212,10 +212,9 @@ fn in_use(ui: &mut Ui, cx: &mut PanelContext<'_>) {
 
 /// What happens to targets where no model is in use.
 fn without_a_model(view: &View) -> &'static str {
-    if view.gap.model.effects.is_empty() {
-        "sent as they are"
-    } else {
-        "corrected by the effects that were added"
+    match view.touch.correct_with {
+        Some(Correction::Effects) => "corrected by the effects that were added",
+        Some(Correction::Model(_)) | None => "sent as they are",
     }
 }
 
