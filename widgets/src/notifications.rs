@@ -70,6 +70,11 @@ impl Notification {
         !self.dismissed && now.saturating_duration_since(self.at) < self.severity.lifetime()
     }
 
+    /// Whether there is nothing to be done or opened.
+    fn asks_nothing(&self) -> bool {
+        matches!(self.severity, Severity::Info | Severity::Done) && self.file.is_none()
+    }
+
     /// What it says, and how often that was said.
     fn words(&self) -> String {
         match self.times {
@@ -134,9 +139,13 @@ impl Notifications {
         self.kept.iter().rev()
     }
 
-    /// Messages on screen at a time, newest last.
+    /// Messages on screen at a time, newest last. Of those that ask for nothing only the newest: a stack of them
+    /// would cover the work.
     pub fn on_screen(&self, now: Instant) -> impl Iterator<Item = &Notification> {
-        let shown: Vec<_> = self.kept.iter().filter(|n| n.is_on_screen(now)).collect();
+        let newest = self.kept.iter().rev().find(|n| n.is_on_screen(now) && n.asks_nothing());
+        let newest = newest.map(|n| n.number);
+        let shown = self.kept.iter().filter(|n| n.is_on_screen(now));
+        let shown: Vec<_> = shown.filter(|n| !n.asks_nothing() || Some(n.number) == newest).collect();
         let skip = shown.len().saturating_sub(MOST_TOASTS);
         shown.into_iter().skip(skip)
     }

@@ -23,6 +23,7 @@ struct JobProgress {
     fraction: f64,
     left: Option<Duration>,
     cancelling: bool,
+    resting: bool,
 }
 
 /// What the operator asked for.
@@ -47,7 +48,7 @@ impl<'a> ProgressLine<'a> {
 
     /// A job: what it does, and how far it is, 0..=1.
     pub fn job(sentence: &'a str, fraction: f64) -> Self {
-        let job = JobProgress { fraction, left: None, cancelling: false };
+        let job = JobProgress { fraction, left: None, cancelling: false, resting: false };
         Self { sentence, role: Role::Ink, job: Some(job) }
     }
 
@@ -63,6 +64,14 @@ impl<'a> ProgressLine<'a> {
     pub fn cancelling(mut self, cancelling: bool) -> Self {
         if let Some(job) = &mut self.job {
             job.cancelling = cancelling;
+        }
+        self
+    }
+
+    /// Where something else could be pressed a moment ago; Cancel is not pressed by the same hand.
+    pub fn resting(mut self, resting: bool) -> Self {
+        if let Some(job) = &mut self.job {
+            job.resting = resting;
         }
         self
     }
@@ -105,7 +114,7 @@ impl<'a> ProgressLine<'a> {
     fn controls(&self, ui: &mut Ui, job: JobProgress) -> Option<ProgressAction> {
         let mut action = None;
         let cancel = if job.cancelling { "Cancelling…" } else { "Cancel" };
-        if ui.add_enabled(!job.cancelling, egui::Button::new(cancel)).clicked() {
+        if ui.add_enabled(!job.cancelling && !job.resting, egui::Button::new(cancel)).clicked() {
             action = Some(ProgressAction::Cancel);
         }
         ui.add_space(space::S);

@@ -167,8 +167,11 @@ pub fn take_shortcuts(ctx: &egui::Context, stop_keys: StopKeys) -> Vec<Action> {
         .collect();
     // egui takes Ctrl+Shift+O for Ctrl+O too, so the longer ones come first.
     shortcuts.sort_by_key(|(keys, _)| !keys.modifiers.shift);
+    // Nor does Ctrl+Shift+Z mean Ctrl+Z: it is redo wherever there is one, and nothing elsewhere.
+    let shift = ctx.input(|input| input.modifiers.shift);
     for (keys, action) in shortcuts {
-        if ctx.input_mut(|input| input.consume_shortcut(&keys)) {
+        let is_other = shift && !keys.modifiers.shift && action == Action::Undo;
+        if !is_other && ctx.input_mut(|input| input.consume_shortcut(&keys)) {
             taken.push(action);
         }
     }

@@ -109,7 +109,12 @@ fn number(ui: &mut Ui, label: &str, value: &mut u32) {
 fn seen(ui: &mut Ui, eyes: &EyesView) {
     let Some(seen) = &eyes.board_seen else { return };
     let as_chosen = seen.inner_corners.is_some() && other_board(eyes).is_none();
-    let role = if as_chosen { Role::Accepted } else { Role::Warning };
+    // No board is in view most of the time, and nothing is wrong then.
+    let role = match seen.inner_corners {
+        None => Role::Weak,
+        Some(_) if as_chosen => Role::Accepted,
+        Some(_) => Role::Warning,
+    };
     ui.add_space(space::XS);
     ui.label(egui::RichText::new(&seen.text).color(role.color(theme::tokens(ui))));
 }

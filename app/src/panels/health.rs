@@ -4,7 +4,7 @@ use egui::{Button, Ui};
 use jiff::Timestamp;
 use plumbline_engine::View;
 use plumbline_engine::view::{EyesHealth, HealthFigures, HealthState, HealthView};
-use plumbline_widgets::format;
+use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::key_value::{KeyValue, key_value_grid};
 use plumbline_widgets::theme::{self, group_heading, space};
 
@@ -82,7 +82,7 @@ fn figures(ui: &mut Ui, name: &str, figures: &HealthFigures) {
         .zip(off)
         .map(|(row, (off_m, sigma_m))| KeyValue::text(row, format::cm_with(off_m, sigma_m)))
         .collect();
-    rows.push(KeyValue::text("Right eye has turned", format::degrees(figures.turn_rad)));
+    rows.push(KeyValue::quantity("Right eye has turned", Quantity::Angle, figures.turn_rad));
     rows.push(
         KeyValue::text("Vertical error", format::px(figures.epipolar_px))
             .help("How far matched places leave the epipolar lines"),

@@ -17,9 +17,21 @@ pub fn action_button(
     action: impl Into<Action>,
     text: &str,
 ) -> Response {
+    chosen_button(ui, cx, action, text, false)
+}
+
+/// The same of one among several answers, marked where it is the one that was given.
+pub fn chosen_button(
+    ui: &mut Ui,
+    cx: &mut PanelContext<'_>,
+    action: impl Into<Action>,
+    text: &str,
+    is_chosen: bool,
+) -> Response {
     let action = action.into();
     let why = action.refusal(cx.view);
-    let button = ui.add_enabled(why.is_none(), Button::new(text)).on_hover_text(action.label());
+    let button = Button::new(text).selected(is_chosen);
+    let button = ui.add_enabled(why.is_none(), button).on_hover_text(action.label());
     let button = button.on_disabled_hover_text(why.unwrap_or_default());
     if button.clicked() {
         cx.outbox.act(action);

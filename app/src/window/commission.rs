@@ -9,7 +9,9 @@ use plumbline_widgets::theme::{self, space};
 
 use super::PlumblineWindow;
 use crate::operator::guidance::spent;
-use crate::operator::{Action, CommissionAction, Course, Outbox, Press, Screen, course, shortcut_text};
+use crate::operator::{
+    Action, CommissionAction, Course, GraspAction, Outbox, Press, Screen, course, shortcut_text,
+};
 
 const HEIGHT: f32 = 46.0;
 /// Before what was asked for shows, the same button would ask for it twice.
@@ -90,6 +92,12 @@ fn next(window: &PlumblineWindow, course: &Course, ui: &mut Ui, outbox: &mut Out
             if button.clicked() {
                 outbox.act(Action::Commission(CommissionAction::Next));
             }
+            if let Some(no) = otherwise(actions) {
+                ui.reset_style();
+                if ui.add_enabled(!resting, egui::Button::new(no.label())).clicked() {
+                    outbox.act(no);
+                }
+            }
         }
         Press::Wait { why, fraction } => {
             // While STOP is latched nothing goes on by waiting.
@@ -112,6 +120,12 @@ fn next(window: &PlumblineWindow, course: &Course, ui: &mut Ui, outbox: &mut Out
 fn leads_only(from: Screen, to: Screen, actions: &[Action]) -> bool {
     let is_said = from == Screen::Commission || from == to;
     !is_said && actions.iter().any(|action| action.moves_the_robot())
+}
+
+/// The other answer, where the button gives one: what is pressed to go on must not be what makes it good.
+fn otherwise(actions: &[Action]) -> Option<Action> {
+    let answers_yes = actions == [Action::Grasp(GraspAction::Held)];
+    answers_yes.then_some(Action::Grasp(GraspAction::NotHeld))
 }
 
 /// "Next: show the board at all places".

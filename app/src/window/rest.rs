@@ -29,6 +29,11 @@ impl<T: PartialEq> Rest<T> {
             self.until_s = if self.is_new { f64::NEG_INFINITY } else { now_s + REST_S };
         }
         self.is_new = false;
+        // Who goes on hammering has not seen yet what it means now.
+        let hammers = ctx.input(|input| input.pointer.any_pressed() || input.key_pressed(egui::Key::Enter));
+        if hammers && now_s < self.until_s {
+            self.until_s = now_s + REST_S;
+        }
         if now_s < self.until_s {
             ctx.request_repaint_after_secs((self.until_s - now_s) as f32);
         }

@@ -58,7 +58,7 @@ fn line_of(view: &View, screen: Screen) -> Line<'_> {
 
 fn contents(view: &View, line: Line<'_>, resting: bool, ui: &mut Ui, outbox: &mut Outbox) {
     let (guidance, led) = match line {
-        Line::Running(job) => return running(view, job, ui, outbox),
+        Line::Running(job) => return running(view, job, resting, ui, outbox),
         Line::Guided { guidance, led } => (guidance, led),
     };
     let accepts = guidance.next.as_ref().is_some_and(|next| next.action.puts_in_use());
@@ -87,11 +87,13 @@ fn contents(view: &View, line: Line<'_>, resting: bool, ui: &mut Ui, outbox: &mu
     });
 }
 
-fn running(view: &View, job: &JobView, ui: &mut Ui, outbox: &mut Outbox) {
+fn running(view: &View, job: &JobView, resting: bool, ui: &mut Ui, outbox: &mut Outbox) {
     let JobState::Running { fraction, doing, remaining, cancelling } = &job.state else { return };
     let stops = if moves(view) { ". The robot moves; Esc or space stops." } else { "" };
     let sentence = format!("{}: {doing}{stops}", job.title);
-    let progress = ProgressLine::job(&sentence, *fraction).time_left(*remaining).cancelling(*cancelling);
+    let progress = ProgressLine::job(&sentence, *fraction).time_left(*remaining);
+    // Who hammers the button that began it does not cancel it.
+    let progress = progress.cancelling(*cancelling).resting(resting);
     let asked = ui.with_layout(Layout::left_to_right(Align::Center), |ui| progress.show(ui)).inner;
     if asked == Some(ProgressAction::Cancel) {
         outbox.send(JobCommand::Cancel(job.id));

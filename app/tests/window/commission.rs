@@ -288,9 +288,17 @@ fn the_tomato_is_laid_out_then_grasped_then_judged_by_a_person() {
     assert_eq!(press(lost).0, "Next: grasp the tomato");
 
     Arc::make_mut(&mut view.grasp).run = Some(Arc::new(run));
-    let (label, _, sent) = press(view);
+    let (label, _, sent) = press(view.clone());
     assert_eq!(label, "Next: say that it is held");
     assert_eq!(sent, [Command::from(GraspCommand::Judge { attempt: "run".to_owned(), held: true })]);
+    // The other answer stands beside it.
+    let fake = Fake::over(view);
+    let mut window = fake.window(on(Screen::Grasp));
+    click(&mut window, "It was not held");
+    assert_eq!(
+        fake.take_sent(),
+        [Command::from(GraspCommand::Judge { attempt: "run".to_owned(), held: false })]
+    );
 }
 
 #[test]

@@ -264,6 +264,20 @@ fn the_best_proposal_is_used_by_the_button_of_the_step() {
 }
 
 #[test]
+fn a_model_that_may_be_no_better_than_none_is_not_recommended() {
+    let mut view = trained();
+    let map = view.map.as_mut().expect("drawn");
+    Arc::make_mut(map).without_m = Some(1e-6);
+    let fake = Fake::over(with(view));
+    let mut window = fake.window(on_models());
+    assert!(says(&window, "these touches do not tell that it helps"));
+    click(&mut window, "Models compared");
+    assert!(says(&window, "which cannot be told apart from that"));
+    press_next(&mut window, "Go to Gap");
+    assert_eq!(models(&fake), []);
+}
+
+#[test]
 fn the_models_that_were_not_chosen_ask_for_nothing_any_more() {
     let others = trained().proposals.into_iter().filter(|model| model.method() != Method::M3).collect();
     let fake = Fake::over(with(ModelsView { proposals: others, ..in_use() }));

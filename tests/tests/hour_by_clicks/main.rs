@@ -5,6 +5,7 @@
 
 #![allow(clippy::print_stdout, reason = "the table of the run, with --nocapture")]
 
+mod album;
 mod busy;
 mod legs;
 mod table;

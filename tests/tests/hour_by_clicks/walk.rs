@@ -5,8 +5,9 @@ use std::time::{Duration, Instant};
 
 use egui_kittest::Node;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use plumbline_tests::{Window, press, thread_processor_time, view, window_of_size};
+use plumbline_tests::{Window, for_a_while, press, thread_processor_time, view, window_of_size};
 
+use crate::album::{Album, is_light, size_pt};
 use crate::legs::Leg;
 use crate::table::{LegTaken, Taken};
 use crate::watch::{Watch, is_computing, is_under_way};
@@ -23,8 +24,22 @@ const READ_FOR: Duration = Duration::from_secs(1);
 /// Who sees no answer to a click presses once more.
 const ANSWERED_WITHIN: Duration = Duration::from_secs(5);
 
-/// Of the window.
-const SIZE_PT: [f32; 2] = [1440.0, 900.0];
+/// Steps at the left.
+const SCREENS: &[&str] = &[
+    "Commission",
+    "Live",
+    "Eyes",
+    "Mount",
+    "Touch",
+    "Models",
+    "Gap",
+    "Hand-eye",
+    "Grasp",
+    "Drift",
+    "Timeline",
+    "Robot",
+    "Detect",
+];
 
 /// The foot in which the big button stands, with a sentence of two lines.
 const FOOT_PT: f32 = 80.0;
@@ -39,6 +54,7 @@ pub struct Walk {
     legs: Vec<LegTaken>,
     lost: Vec<String>,
     began: Instant,
+    album: Album,
     /// The button that is being read, and since when.
     read: Option<(String, Instant)>,
 }
@@ -46,13 +62,20 @@ pub struct Walk {
 impl Walk {
     /// The first start on the twin, with nothing done before.
     pub fn begin(data_dir: &Path) -> Self {
+        let began = Instant::now();
+        let mut window = window_of_size(data_dir, Some(SCENARIO), size_pt().into());
+        if is_light() && window.ctx.theme() == egui::Theme::Dark {
+            window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::T);
+            window.run_steps(2);
+        }
         Self {
-            began: Instant::now(),
-            window: window_of_size(data_dir, Some(SCENARIO), SIZE_PT.into()),
+            began,
+            window,
             watch: Watch::default(),
             legs: vec![],
             lost: vec![],
             read: None,
+            album: Album::new(),
         }
     }
 
@@ -74,6 +97,7 @@ impl Walk {
             let now = view(&self.window);
             if is_under_way(&now) || (leg.is_behind)(&now) {
                 self.read = None;
+                self.album.picture_now_and_then(&mut self.window, leg.name);
                 continue;
             }
             let Some(label) = self.taken(leg).or_else(|| self.primary()).filter(|label| self.is_read(label))
@@ -86,9 +110,12 @@ impl Walk {
                 assert!(self.lost.len() < 10, "{:#?}", self.lost);
                 self.click(leg.rail, leg, &mut clicks);
             } else {
+                self.album.picture(&mut self.window, &format!("{}-before-{label}", leg.name));
                 self.click(&label, leg, &mut clicks);
+                self.album.picture(&mut self.window, &format!("{}-after-{label}", leg.name));
             }
         }
+        self.album.picture(&mut self.window, &format!("{}-behind", leg.name));
         let taken = LegTaken {
             name: leg.name,
             clicks,
@@ -100,8 +127,14 @@ impl Walk {
         self.legs.push(taken);
     }
 
-    /// What all of it took.
-    pub fn end(self) -> Taken {
+    /// What all of it took. Where pictures are wanted, there is one of every other screen too.
+    pub fn end(mut self) -> Taken {
+        let screens = if self.album.is_wanted() { SCREENS } else { &[] };
+        for step in screens {
+            press(&mut self.window, step, button);
+            for_a_while(&mut self.window, Duration::from_secs(2));
+            self.album.picture(&mut self.window, step);
+        }
         let Watch { pauses, slow, frames, longest, warnings, .. } = self.watch;
         Taken { legs: self.legs, pauses, slow, frames, longest, lost: self.lost, warnings }
     }
@@ -166,7 +199,7 @@ fn button<'w>(window: &'w Window, label: &'w str) -> Option<Node<'w>> {
 
 /// The big button of the bottom line, where it can be pressed.
 fn big(window: &Window) -> Option<Node<'_>> {
-    let [_, height] = SIZE_PT;
+    let [_, height] = size_pt();
     let is_big = |node: &Node<'_>| {
         let rect = node.rect();
         rect.height() >= BIG_PT && rect.top() >= height - FOOT_PT && rect.bottom() <= height

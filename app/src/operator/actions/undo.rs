@@ -9,7 +9,7 @@ use plumbline_engine::{
     TouchCommand, View,
 };
 
-use super::{GapAction, LabelsAction, ModelsAction, led_by};
+use super::{GapAction, LabelsAction, ModelsAction, is_under_way, led_by};
 use crate::operator::Screen;
 use crate::operator::words::clock;
 
@@ -115,6 +115,10 @@ pub fn of_result(view: &View, subject: Subject) -> Result<Undo, NoUndo> {
             Ok(Undo { then, ..of_workflow(command) })
         }
         Subject::Effects => workflow(GapAction::Undo.refusal(view), GapCommand::Undo).map(of_workflow),
+        // Its touches rest on where the screen was taken to lie.
+        Subject::Screen if is_under_way(&view.touch.phase) => {
+            Err("a run of touches is under way: finish or close it first".into())
+        }
         Subject::Eyes | Subject::Mount | Subject::Screen => {
             if !view.timeline.is_known {
                 return Err("the timeline of results is not read yet".into());

@@ -4,13 +4,16 @@ use plumbline_engine::View;
 use plumbline_engine::view::{DriftMover, DriftVerdict};
 
 use super::sentence::{Guidance, say};
-use super::source_trouble;
+use super::{eyes_off, source_trouble};
 use crate::operator::{Action, Screen};
 
 pub(super) fn drift(view: &View) -> Guidance {
     let drift = &view.drift;
     if !drift.is_watching {
         if let Some(guidance) = source_trouble(view) {
+            return guidance;
+        }
+        if let Some(guidance) = eyes_off(view) {
             return guidance;
         }
         let said = if drift.course.is_some() {

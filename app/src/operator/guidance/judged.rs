@@ -8,6 +8,7 @@ use plumbline_widgets::format;
 use super::onward::after_the_eyes;
 use super::sentence::{Guidance, say};
 use super::{dropped, verdict};
+use crate::operator::words::eyes::all_cold;
 use crate::operator::words::health::not_offered;
 use crate::operator::{Action, Screen};
 
@@ -39,11 +40,12 @@ pub(super) fn judge(view: &View) -> Guidance {
     if !verdict.good {
         return say(verdict.sentence).warn().then("Collect more pairs", Action::Go(Screen::Collect));
     }
+    let but = all_cold(eyes).map_or_else(String::new, |cold| format!(" {cold}"));
     if eyes.in_use.is_some() {
-        say("Nothing speaks against this calibration. Next: see what it would change.")
+        say(format!("Nothing speaks against this calibration. Next: see what it would change.{but}"))
             .then("Compare with the one in use", Action::Go(Screen::Accept))
     } else {
-        say("Nothing speaks against this calibration. Look at single pairs, or accept it.")
+        say(format!("Nothing speaks against this calibration. Look at single pairs, or accept it.{but}"))
             .then("Accept calibration", Action::Accept)
     }
 }

@@ -23,7 +23,7 @@ pub use touch::{
 };
 
 use plumbline_engine::View;
-use plumbline_engine::view::{CaptureHint, Connection, EyesView, Proposal, SourceStatus};
+use plumbline_engine::view::{CaptureHint, Connection, EyesView, Proposal, SourceStatus, StepState};
 use plumbline_widgets::format;
 
 use super::{Action, CommissionAction, RobotAction, Screen, faults};
@@ -106,6 +106,12 @@ fn source_trouble(view: &View) -> Option<Guidance> {
     }
 }
 
+/// Where the calibration of the eyes in use does not hold: why, and what to do.
+fn eyes_off(view: &View) -> Option<Guidance> {
+    let StepState::Stale { why } = &view.eyes.step else { return None };
+    Some(say(why.clone()).warn().then("Calibrate the eyes again", Action::Go(Screen::Collect)))
+}
+
 /// Before the operator is led; then the course says what comes next.
 fn commissioning(view: &View) -> Guidance {
     let commission = &view.commission;
@@ -119,10 +125,12 @@ fn commissioning(view: &View) -> Guidance {
     let start = Action::Commission(CommissionAction::Start);
     match commission.began {
         _ if commission.is_done() => say("All steps are done.").then("Grasp", Action::Go(Screen::Grasp)),
-        Some(_) => say("Commissioning goes on where it was. Nothing moves yet.")
+        Some(_) => say("Commissioning goes on where it was. The button moves nothing.")
             .then("Next: go on with commissioning", start),
-        None => say("Eight steps lead to the first good grasp, each with one button. Nothing moves yet.")
-            .then("Next: begin commissioning", start),
+        None => {
+            say("Eight steps lead to the first good grasp, each with one button. This one moves nothing.")
+                .then("Next: begin commissioning", start)
+        }
     }
 }
 
@@ -139,6 +147,9 @@ fn live(view: &View) -> Guidance {
     if view.eyes.in_use.is_none() {
         return say("The eyes are not calibrated, so nothing can be measured yet.")
             .then("Calibrate the eyes", Action::Go(Screen::Collect));
+    }
+    if let Some(guidance) = eyes_off(view) {
+        return guidance;
     }
     if let Some(guidance) = onward::after_the_eyes(view, "The eyes are calibrated.") {
         return guidance;
@@ -186,6 +197,14 @@ fn collect(view: &View) -> Guidance {
     let twin = &view.twin;
     let toured = twin.running && (twin.board.is_none() || twin.board_places_left > 0);
     let enough = count >= ENOUGH_PAIRS && (eyes.ghost.is_none() || toured);
+    if eyes.is_solved_in_use
+        && let StepState::Stale { why } = &eyes.step
+    {
+        // What was taken before tells how the eyes were then.
+        return say(format!("{why} Delete these pairs and take new ones."))
+            .warn()
+            .then("Delete all pairs", Action::DeleteAll);
+    }
     if eyes.is_solved_in_use {
         let said = format!(
             "The calibration in use was solved from {}.",
@@ -251,7 +270,7 @@ pub fn hint_text(hint: &CaptureHint) -> String {
         CaptureHint::Blurred { .. } => "The image is blurred: more light, or hold it still.".to_owned(),
         CaptureHint::NothingNew => "The board has been here: move it to the outline.".to_owned(),
         CaptureHint::Ready => "Ready to capture.".to_owned(),
-        CaptureHint::Captured { pair } => format!("Captured {pair}."),
+        CaptureHint::Captured { pair } => format!("Captured as {pair}."),
     }
 }
 

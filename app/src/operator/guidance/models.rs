@@ -1,11 +1,11 @@
 //! What to do next with correction models: one button, named by what it does.
 
-use plumbline_engine::view::StepState;
+use plumbline_engine::view::{Figure, StepState, Subject};
 use plumbline_engine::{Correction, View};
 use plumbline_widgets::format;
 
 use super::sentence::{Guidance, say};
-use super::standing::{Standing, standing};
+use super::standing::{Standing, no_better, standing};
 use crate::operator::actions::too_few;
 use crate::operator::snapshot::models::{FEWEST_FOR_A_NETWORK, Method};
 use crate::operator::{Action, ModelsAction, Screen};
@@ -15,7 +15,8 @@ pub(super) fn models(view: &View) -> Guidance {
     match standing(models) {
         Standing::NothingTouched => say("Models learn from touches. Touch the screen first (step 3).")
             .then("Go to Touch", Action::Go(Screen::Touch)),
-        Standing::NotChosen => say(next_or(view, "Choose the session of touches to learn from.")),
+        Standing::NotChosen => say(next_or(view, "Choose the session of touches to learn from."))
+            .then("Go to Touch", Action::Go(Screen::Touch)),
         Standing::Unusable(why) => say(why).warn().then("Go to Touch", Action::Go(Screen::Touch)),
         Standing::Recorded(count) if count < FEWEST_FOR_A_NETWORK => {
             say(format!("{}.", too_few(count))).then("Go to Touch", Action::Go(Screen::Touch))
@@ -26,13 +27,21 @@ pub(super) fn models(view: &View) -> Guidance {
                 .then(format!("Train M1, M2 and M3 on {touches}"), Action::Models(ModelsAction::TrainAll))
         }
         Standing::Training => say("The models are being trained; nothing is used before you accept it."),
-        Standing::Proposed(method, error_m) => proposed(method, error_m),
+        Standing::Proposed(method, error_m) => proposed(view, method, error_m),
         Standing::InUse(method) => in_use(view, method),
     }
 }
 
-fn proposed(method: Method, error_m: Option<f64>) -> Guidance {
+fn proposed(view: &View, method: Method, error_m: Option<f64>) -> Guidance {
     let name = method.name();
+    if let Some((error_m, without_m)) = error_m.zip(no_better(&view.models, method)) {
+        let said = format!(
+            "{name} misses by {} on touches that it had not seen, and without a model it is {}: these touches do not tell that it helps. More of them may, or a named cause.",
+            format::mm(error_m),
+            format::mm(without_m)
+        );
+        return say(said).warn().then("Go to Gap", Action::Go(Screen::Gap));
+    }
     let said = match error_m {
         Some(error_m) => format!(
             "{name} is the one to use: {} on touches that it had not seen. Look at its map, then use it.",
@@ -56,6 +65,9 @@ fn in_use(view: &View, method: Method) -> Guidance {
             _ => guidance.then("Go to Touch", Action::Go(Screen::Touch)),
         };
     }
+    if let Some(checked) = checked(view, method) {
+        return checked;
+    }
     // A model that is in use waits while targets go by something else.
     let said = if view.touch.correct_with == Some(Correction::Effects) {
         format!(
@@ -65,6 +77,26 @@ fn in_use(view: &View, method: Method) -> Guidance {
         next_or(view, &format!("{name} is in use. Next: check it with new touches. Nothing moves yet."))
     };
     say(said).then(format!("Check {name} with new touches"), Action::Models(ModelsAction::Check))
+}
+
+/// What came of the newest check of the model, made since it is in use.
+fn checked(view: &View, method: Method) -> Option<Guidance> {
+    let timeline = &view.timeline;
+    let since = timeline.in_use.iter().find(|now| now.subject == Subject::Correction)?.since?;
+    let of_it = format!("corrected with {}", method.name());
+    let mut newest = timeline.entries.iter().rev().filter(|entry| entry.subject == Subject::Check);
+    let check = newest.find(|entry| entry.at >= since && entry.title.ends_with(&of_it))?;
+    let Some(Figure::Meters(after_m)) = check.after else { return None };
+    let before = match check.before {
+        Some(Figure::Meters(before_m)) => format!(", {} without it", format::mm(before_m)),
+        _ => String::new(),
+    };
+    let name = method.name();
+    let said = format!(
+        "{name} is in use and was checked: the finger lands {} beside new targets{before}.",
+        format::mm(after_m)
+    );
+    Some(say(format!("{said} Next: grasp.")).then("Go to Grasp", Action::Go(Screen::Grasp)))
 }
 
 /// The engine's own sentence, where it has one.

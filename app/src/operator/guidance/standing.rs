@@ -73,3 +73,11 @@ fn best_proposal(models: &ModelsView) -> Option<Standing> {
     let chosen = simplest.unwrap_or(best);
     Some(Standing::Proposed(chosen.method(), error_m(chosen)))
 }
+
+/// The mean error without a model, where what the model leaves on touches that it had not seen may as well be as large,
+/// m.
+pub fn no_better(models: &ModelsView, method: Method) -> Option<f64> {
+    let without_m = models.map.as_ref()?.without_m?;
+    let [_, high_m] = models.comparison.as_ref()?.of(method)?.mean_2d_interval_m;
+    (high_m >= without_m).then_some(without_m)
+}

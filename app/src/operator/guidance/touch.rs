@@ -1,9 +1,9 @@
 //! What to do next with touching the screen: one button, named by what it does.
 
-use plumbline_engine::View;
 use plumbline_engine::view::{
     Figure, PlanView, StepState, Subject, TouchCounts, TouchOutcome, TouchPhase, TouchView,
 };
+use plumbline_engine::{Correction, View};
 use plumbline_model::touch_plan::{Finger, Purpose};
 use plumbline_model::touchscreen::ScreenPlacement;
 use plumbline_widgets::format;
@@ -133,7 +133,7 @@ fn paused(touch: &TouchView, why: Option<&str>) -> Guidance {
     let done = done_of(touch.counts);
     let why = why.map_or_else(String::new, |why| format!(" {}.", capitalized(why.trim_end_matches('.'))));
     let guidance =
-        say(format!("Paused after {done} of {}; all touches are on disk.{why}", wanted(touch.counts)))
+        say(format!("Paused after {done} of {}; what was touched is on disk.{why}", wanted(touch.counts)))
             .then(go_on(touch), Action::Touch(TouchAction::Resume));
     if why.is_empty() { guidance } else { guidance.warn() }
 }
@@ -240,7 +240,8 @@ fn checked(view: &View, touched: &str) -> Guidance {
             Worth::Harm => say(said).warn().then("Go to Gap", Action::Go(Screen::Gap)),
         };
     }
-    let said = format!("{touched} checked: {}", lands(view, figures.mean_m));
+    let beside = beside_held_out(view, figures.mean_m).unwrap_or_default();
+    let said = format!("{touched} checked: {}{beside}", lands(view, figures.mean_m));
     if touch.correct_with.is_some() {
         return say(format!("{said} It stands on the timeline. Next: grasp."))
             .then("Go to Grasp", Action::Go(Screen::Grasp));
@@ -253,6 +254,22 @@ fn lands(view: &View, mean_m: f64) -> String {
     let before = before_check_m(view, mean_m)
         .map_or_else(String::new, |before_m| format!(", {} without a model", format::mm(before_m)));
     format!("the finger lands {} beside the target, on average{before}.", format::mm(mean_m))
+}
+
+/// A check that misses by so much more than was left on held-out rows asks why.
+const MUCH_MORE: f64 = 1.3;
+
+/// Why the search for the effects in use said less, where it said much less, a sentence.
+fn beside_held_out(view: &View, mean_m: f64) -> Option<String> {
+    let by_effects = view.touch.correct_with == Some(Correction::Effects);
+    let in_use = view.timeline.in_use.iter().find(|now| now.subject == Subject::Effects && by_effects)?;
+    let Some(Figure::Meters(said_m)) = in_use.figure else { return None };
+    (mean_m > MUCH_MORE * said_m).then(|| {
+        format!(
+            " Held-out rows said {}: that was at places like those that were learned from, these are new ones.",
+            format::mm(said_m)
+        )
+    })
 }
 
 /// What came of a check that is over, a sentence; `None`: nothing was checked, or it proved something, which says more.
@@ -306,7 +323,7 @@ fn first(view: &View) -> Guidance {
 mod tests {
     use std::sync::Arc;
 
-    use plumbline_engine::view::{EntryKind, TimelineEntry, TimelineView, TouchFigures};
+    use plumbline_engine::view::{EntryKind, InUseNow, TimelineEntry, TimelineView, TouchFigures};
     use plumbline_model::robot::default_rig;
     use plumbline_model::touch_plan::{PlanOptions, TouchArea};
 
@@ -377,5 +394,26 @@ mod tests {
         assert_eq!(before_check_m(&check(Some(5.88e-3), 0.93e-3), 1.4e-3), None, "another check");
         assert_eq!(before_check_m(&check(None, 0.93e-3), 0.93e-3), None, "nothing to compare with");
         assert_eq!(before_check_m(&View::default(), 0.93e-3), None);
+    }
+
+    #[test]
+    fn a_check_that_misses_by_much_more_than_the_search_said_says_why() {
+        let said = |correct_with, mean_m| {
+            let mut view = check(None, mean_m);
+            let effects = InUseNow {
+                subject: Subject::Effects,
+                title: "Elbow: zero".to_owned(),
+                figure: Some(Figure::Meters(0.8e-3)),
+                since: None,
+                entry: None,
+            };
+            Arc::make_mut(&mut view.timeline).in_use = Arc::from([effects]);
+            view.touch = Arc::new(TouchView { correct_with, ..TouchView::default() });
+            beside_held_out(&view, mean_m)
+        };
+        let much = said(Some(Correction::Effects), 1.67e-3);
+        assert!(much.is_some_and(|said| said.contains("Held-out rows said 0.80 mm")));
+        assert_eq!(said(Some(Correction::Effects), 0.9e-3), None, "about as much");
+        assert_eq!(said(None, 1.67e-3), None, "it was not corrected by them");
     }
 }

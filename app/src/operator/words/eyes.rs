@@ -31,6 +31,18 @@ pub fn cold_among<'a>(eyes: &EyesView, pairs: impl Iterator<Item = &'a str>) -> 
     })
 }
 
+/// That all of the pairs were taken with cold eyes, and what that means; a sentence.
+pub fn all_cold(eyes: &EyesView) -> Option<String> {
+    let mut known = eyes.minutes_on.iter().flatten().peekable();
+    known.peek()?;
+    known.all(|minutes| is_cold(*minutes)).then(|| {
+        format!(
+            "The eyes were cold and still turn a little: calibrate them again once they have been on for \
+             {WARM_AFTER_MINUTES:.0} minutes."
+        )
+    })
+}
+
 fn is_cold(minutes_on: f64) -> bool {
     minutes_on < WARM_AFTER_MINUTES
 }
@@ -73,5 +85,13 @@ mod tests {
         assert_eq!(said(&[Some(2.0), Some(3.0), None]), None, "all alike");
         assert_eq!(said(&[None, None, None]), None);
         assert_eq!(minutes_on(&eyes(&[Some(3.0)]), "file"), None);
+    }
+
+    #[test]
+    fn a_calibration_of_cold_eyes_alone_says_so() {
+        let said = |minutes_on: &[Option<f64>]| all_cold(&eyes(minutes_on));
+        assert!(said(&[Some(2.0), None, Some(3.0)]).is_some_and(|said| said.contains("20 minutes")));
+        assert_eq!(said(&[Some(2.0), Some(25.0)]), None, "that is told where the pairs are");
+        assert_eq!((said(&[None]), said(&[])), (None, None), "nobody knows");
     }
 }

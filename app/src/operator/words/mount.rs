@@ -27,7 +27,7 @@ pub fn verdict(summary: &MountSummary) -> (bool, String) {
     };
     let error = format::px(summary.rms_px);
     let known = format::degrees(NORMAL_95 * sd_rad);
-    let with = if held.is_empty() { "" } else { ", with what is remarked on" };
+    let with = if held.is_empty() { "" } else { "; what is remarked below is in it" };
     (true, format!("Good: {views} to {error}, and where the eyes look is known to {known} (95 %{with})."))
 }
 
@@ -71,7 +71,7 @@ mod tests {
     fn what_the_uncertainty_holds_is_no_doubt_of_it() {
         let slack = "the neck has slack; the stated uncertainty includes it".to_owned();
         let (good, said) = verdict(&MountSummary { remarks: vec![slack.clone()], ..summary() });
-        assert!(good && said.ends_with("(95 %, with what is remarked on)."), "{said}");
+        assert!(good && said.ends_with("(95 %; what is remarked below is in it)."), "{said}");
         let lenses = "calibrate the eyes from board pairs to have it".to_owned();
         let (good, said) = verdict(&MountSummary { remarks: vec![slack, lenses], ..summary() });
         assert!(!good && said.starts_with("Doubtful. Calibrate the eyes"), "{said}");

@@ -102,8 +102,7 @@ fn below(view: &CommissionStepView, course: Option<&Course>) -> String {
         }
         (CommissionState::Now, Some(Press::Do { label, .. })) => format!("now: {}", small_first(label)),
         (CommissionState::Now, Some(Press::Wait { why, .. })) => format!("now: {}", small_first(why)),
-        (CommissionState::Now, None) => what_for(view.step).to_owned(),
-        (CommissionState::Waits(step), _) => format!("waits for step {}", step.number()),
+        (CommissionState::Now, None) | (CommissionState::Waits(_), _) => what_for(view.step).to_owned(),
     }
 }
 

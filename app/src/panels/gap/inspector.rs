@@ -35,7 +35,8 @@ pub fn show(ui: &mut Ui, view: &View, _state: &mut PanelState, _outbox: &mut Out
     );
     let held_out = &finding.shown;
     if held_out.rows > 0 {
-        theme::group_heading(ui, "Held-out rows");
+        // Without an effect nothing was held out.
+        theme::group_heading(ui, if finding.effects.is_empty() { "All rows" } else { "Held-out rows" });
         key_value_grid(
             ui,
             "held out",

@@ -13,7 +13,8 @@ use crate::operator::{Action, GapAction};
 use crate::panels::PanelContext;
 use crate::panels::parts::progress;
 
-/// The finding, or what stands in its place: not looked for yet, under way, failed.
+/// The finding, or what stands in its place: not looked for yet, under way, failed. The button of the bottom line looks
+/// for it.
 pub fn finding(ui: &mut Ui, cx: &mut PanelContext<'_>, what: &str) -> Option<Arc<ShownFinding>> {
     let gap = &cx.view.gap;
     if let Some(shown) = &gap.shown {
@@ -31,12 +32,7 @@ pub fn finding(ui: &mut Ui, cx: &mut PanelContext<'_>, what: &str) -> Option<Arc
         }
         return None;
     }
-    let message = Message::new("Nothing was looked for yet", what);
-    let ready = GapAction::Find.refusal(cx.view).is_none();
-    let message = if ready { message.button("Find what is missing") } else { message };
-    if EmptyState::empty(message).show(ui) {
-        cx.outbox.act(Action::Gap(GapAction::Find));
-    }
+    EmptyState::empty(Message::new("Nothing was looked for yet", what)).show(ui);
     None
 }
 

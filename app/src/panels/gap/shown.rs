@@ -78,7 +78,8 @@ fn bars(ui: &mut Ui, cx: &PanelContext<'_>, shown: &ShownFinding) {
     }
     let levels =
         [Level { name: words::floor_name(&shown.finding), value: held_out.floor, role: Role::NoiseFloor }];
-    Intervals::new("Gap on held-out rows", &rows, quantity).levels(&levels).show(ui);
+    let of_rows = if shown.finding.effects.is_empty() { "Gap of all rows" } else { "Gap on held-out rows" };
+    Intervals::new(of_rows, &rows, quantity).levels(&levels).show(ui);
     let worst = held_out.worst_tenth.map(|error| words::error(held_out, error));
     let count = format::count(held_out.rows, "row");
     // Without an effect nothing was held out, and nothing predicted an interval.

@@ -3,6 +3,7 @@
 use egui::Ui;
 use plumbline_engine::view::GraspPhase;
 use plumbline_engine::{GraspCommand, GraspTarget};
+use plumbline_model::listed;
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, space};
 
@@ -66,6 +67,18 @@ fn methods(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             ui.label(theme::small(ui, chosen.about));
         }
     });
+    let lacking: Vec<String> = (grasp.methods.iter())
+        .filter(|known| known.lacks.is_some() && grasp.method != Some(known.method))
+        .map(|known| method(known.method))
+        .collect();
+    if !lacking.is_empty() {
+        let needs = if lacking.len() == 1 { "needs" } else { "need" };
+        let said = format!(
+            "{} {needs} models trained from touches: step 4, Models.",
+            listed(&lacking.iter().map(String::as_str).collect::<Vec<_>>())
+        );
+        ui.label(theme::small(ui, said));
+    }
 }
 
 fn hands(ui: &mut Ui, cx: &mut PanelContext<'_>) {

@@ -8,7 +8,7 @@ use plumbline_widgets::theme::{self, Role, space};
 use crate::operator::GraspAction;
 use crate::operator::words::grasp::{closed, held_now};
 use crate::panels::PanelContext;
-use crate::panels::parts::action_button;
+use crate::panels::parts::chosen_button;
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, run: &GraspRun) {
     let Some(outcome) = run.outcome.as_ref().filter(|_| cx.view.grasp.phase == GraspPhase::Idle) else {
@@ -54,7 +54,8 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, run: &GraspRun) {
     ui.add_space(space::XS);
     ui.horizontal(|ui| {
         ui.label(theme::weak(ui, "What did you see?"));
-        action_button(ui, cx, GraspAction::Held, "Held");
-        action_button(ui, cx, GraspAction::NotHeld, "Not held");
+        // The answer stays marked, and can be changed.
+        chosen_button(ui, cx, GraspAction::Held, "Held", run.told == Some(true));
+        chosen_button(ui, cx, GraspAction::NotHeld, "Not held", run.told == Some(false));
     });
 }

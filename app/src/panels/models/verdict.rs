@@ -96,6 +96,14 @@ impl Facts {
             .without_m
             .map_or_else(String::new, |m| format!(", against {} without a model", format::mm(m)));
         let mean = format::mm(best.errors.mean_2d_m);
+        if let Some(without_m) = self.without_m.filter(|without_m| best.interval_m[1] >= *without_m) {
+            return Some(format!(
+                "{} misses by {mean} on touches that it had not seen; without a model it is {}, which cannot be told \
+                 apart from that.",
+                best.method.name(),
+                format::mm(without_m)
+            ));
+        }
         Some(if self.judged.len() == 1 {
             format!("{} misses by {mean} on touches that it had not seen{against}.", best.method.name())
         } else {

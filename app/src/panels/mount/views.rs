@@ -49,6 +49,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
 fn summary(mount: &MountView) -> String {
     match mount.planned.len() {
         0 => format::count(mount.views.len(), "view"),
+        planned if mount.views.is_empty() => format!("{} planned", format::count(planned, "view")),
         planned => format!("{}, {planned} more planned", format::count(mount.views.len(), "view")),
     }
 }

@@ -23,7 +23,6 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
 }
 
 fn contents(ui: &mut Ui, cx: &mut PanelContext<'_>) {
-    refusal_line(ui, cx, Asked::Jog);
     let view = cx.view;
     ui.horizontal(|ui| {
         choose_tip(ui, &view.robot, &mut |link| cx.outbox.send(RobotCommand::ChooseTip { link }));
@@ -35,7 +34,8 @@ fn contents(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         .why_not(why.as_deref())
         .enabled_elsewhere(pad.is_some())
         .show(ui, &mut cx.state.robot.jog_speed);
-    // Below: in a small window the pad itself has to be in sight.
+    // Below, where the pad does not move under the finger that holds it, and is in sight in a small window.
+    refusal_line(ui, cx, Asked::Jog);
     if !view.robot.model.is_empty() {
         ui.label(theme::small(ui, format!("Moved by the robot {}.", view.robot.model)));
     }

@@ -30,7 +30,8 @@ pub fn show(ui: &mut Ui, view: &View, state: &mut PanelState, outbox: &mut Outbo
 }
 
 fn chosen(ui: &mut Ui, view: &View, one: &TouchState, next: bool, outbox: &mut Outbox) {
-    group_heading(ui, &format!("Touch {}{}", one.number, if next { " (next)" } else { "" }));
+    let waits = next && one.outcome != TouchOutcome::UnderWay;
+    group_heading(ui, &format!("Touch {}{}", one.number, if waits { " (next)" } else { "" }));
     match &one.outcome {
         TouchOutcome::Unreachable(_) | TouchOutcome::Missed(_) => warning(ui, &words::outcome(one)),
         TouchOutcome::Touched => {}

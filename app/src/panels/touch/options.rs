@@ -29,10 +29,10 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, options: &PlanOptions) {
         });
         let typed = &mut cx.state.touch.draft.typed;
         row(ui, "Screen raised by", |ui| {
-            list(ui, "Heights of the screen", "mm", &mut typed[0], &mut edited.screen_heights_m);
+            list(ui, &HEIGHTS, &mut typed[0], &mut edited.screen_heights_m);
         });
         row(ui, "Weight in the hand", |ui| {
-            list(ui, "Weights", "g", &mut typed[1], &mut edited.payloads_kg);
+            list(ui, &WEIGHTS, &mut typed[1], &mut edited.payloads_kg);
         });
     });
     cx.state.touch.draft.change(edited);
@@ -202,22 +202,34 @@ fn fields(ui: &mut Ui, pattern: &mut Pattern) {
     }
 }
 
-/// A list of numbers in thousandths, as people type it: "0, 60, 120".
-fn list(ui: &mut Ui, label: &str, unit: &str, typed: &mut Option<String>, values: &mut Vec<f64>) {
+/// A list of numbers in thousandths, and how large each may be.
+struct List {
+    name: &'static str,
+    unit: &'static str,
+    most: f64,
+}
+
+/// A block that is higher lifts the screen out of the arm's reach.
+const HEIGHTS: List = List { name: "Heights of the screen", unit: "mm", most: 300.0 };
+/// More than a hand of servos carries.
+const WEIGHTS: List = List { name: "Weights", unit: "g", most: 1000.0 };
+
+/// As people type it: "0, 60, 120".
+fn list(ui: &mut Ui, of: &List, typed: &mut Option<String>, values: &mut Vec<f64>) {
     let mut text = typed.clone().unwrap_or_else(|| written(values));
     let edit = ui.add(TextEdit::singleline(&mut text).desired_width(110.0));
-    edit.widget_info(|| WidgetInfo::labeled(egui::Role::TextInput, true, label));
-    ui.label(theme::weak(ui, unit));
+    edit.widget_info(|| WidgetInfo::labeled(egui::Role::TextInput, true, of.name));
+    ui.label(theme::weak(ui, of.unit));
     if edit.changed() {
         *typed = Some(text);
     }
     let Some(text) = typed.clone() else { return };
-    match (read(&text), edit.has_focus()) {
-        (Some(read), false) => {
+    match (read(&text, of), edit.has_focus()) {
+        (Ok(read), false) => {
             *values = read;
             *typed = None;
         }
-        (None, false) => warning(ui, "numbers with commas"),
+        (Err(why), false) => warning(ui, &why),
         (_, true) => {}
     }
 }
@@ -227,12 +239,20 @@ fn written(values: &[f64]) -> String {
     all.join(", ")
 }
 
-fn read(text: &str) -> Option<Vec<f64>> {
-    let all: Option<Vec<f64>> = text
-        .split([',', ';'])
-        .map(|part| part.trim().parse::<f64>().ok().filter(|n| n.is_finite()).map(|n| n / 1e3))
-        .collect();
-    all.filter(|all| !all.is_empty())
+fn read(text: &str, of: &List) -> Result<Vec<f64>, String> {
+    let mut all = vec![];
+    for part in text.split([',', ';']).map(str::trim) {
+        let number: f64 = part.parse().map_err(|_| "numbers with commas between: 0, 60".to_owned())?;
+        if !(0.0..=of.most).contains(&number) {
+            return Err(format!("{part} is not between 0 and {} {}", of.most, of.unit));
+        }
+        let value = number / 1e3;
+        if all.contains(&value) {
+            return Err(format!("{part} stands there twice"));
+        }
+        all.push(value);
+    }
+    Ok(all)
 }
 
 #[cfg(test)]
@@ -242,8 +262,15 @@ mod tests {
     #[test]
     fn lists_of_numbers_survive_being_written_and_read() {
         assert_eq!(written(&[0.0, 0.06, 0.12]), "0, 60, 120");
-        assert_eq!(read("0, 60 ,120"), Some(vec![0.0, 0.06, 0.12]));
-        assert_eq!(read(&written(&[0.0125])), Some(vec![0.0125]));
-        assert_eq!((read("0, a"), read(""), read("inf")), (None, None, None));
+        assert_eq!(read("0, 60 ,120", &HEIGHTS), Ok(vec![0.0, 0.06, 0.12]));
+        assert_eq!(read(&written(&[0.0125]), &HEIGHTS), Ok(vec![0.0125]));
+        let why = |text| read(text, &WEIGHTS).expect_err(text);
+        assert!(why("0, a").contains("numbers with commas") && why("").contains("numbers with commas"));
+        assert_eq!(why("9999999"), "9999999 is not between 0 and 1000 g");
+        assert_eq!(
+            (why("-5").as_str(), why("inf").as_str()),
+            ("-5 is not between 0 and 1000 g", "inf is not between 0 and 1000 g",)
+        );
+        assert_eq!(why("0, 0.0"), "0.0 stands there twice");
     }
 }

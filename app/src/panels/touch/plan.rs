@@ -19,7 +19,7 @@ const PRESETS: [(Preset, &str, &str); 5] = [
         "Place screen",
         "Its corners, each twice: measures where the screen lies. Do this first.",
     ),
-    (Preset::Quick, "Quick", "24 touches: the least that a model can be trained on."),
+    (Preset::Quick, "Quick", "24 touches: enough to train M1, M2 and M3 on, roughly."),
     (
         Preset::First,
         "First calibration",

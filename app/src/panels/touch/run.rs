@@ -76,7 +76,7 @@ fn head(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             match why {
                 Some(why) => warning(ui, why),
                 None => {
-                    ui.label(theme::weak(ui, "Paused. All touches are on disk."));
+                    ui.label(theme::weak(ui, "Paused. What was touched is on disk."));
                 }
             }
             ui.horizontal(|ui| {

@@ -21,12 +21,23 @@ pub struct CommissionAround {
     pub run: Option<RunStanding>,
     /// The finding that is shown.
     pub found: Option<Found>,
+    /// Named effects in the model in use.
+    pub effects: InUse,
     /// What the arms were tied to the eyes by.
     pub hands: Made,
     /// The newest grasp that the operator saw to be good.
     pub held: Made,
     /// Views of the board that were kept: pairs of the eyes, and views of the head.
     pub views: usize,
+}
+
+/// Named effects in the model in use.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct InUse {
+    /// Their names, for keeping.
+    pub names: Vec<String>,
+    /// The same for people.
+    pub told: Vec<String>,
 }
 
 /// How the search for effects stands.

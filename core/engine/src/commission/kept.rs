@@ -62,8 +62,25 @@ pub struct Kept {
     pub counted: BTreeMap<PathBuf, usize>,
     /// The touches that the rest is learned from.
     pub touched: Option<KeptRun>,
+    /// What was learned of them; `None`: not yet.
+    #[serde(default)]
+    pub learned: Option<Learned>,
     /// The touches that checked it.
     pub checked: Option<KeptRun>,
+}
+
+/// What a search for effects made of the touches, once it left nothing open.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Learned {
+    /// Session of the touches.
+    pub session: PathBuf,
+    /// Names of the effects that the model in use had then.
+    pub effects: Vec<String>,
+    /// Whether the touches show something that no effect of the library explains.
+    pub is_not_in_library: bool,
+    /// When that was found; `None` where nobody wrote it down.
+    pub at: Option<Timestamp>,
 }
 
 /// A finished run of touches.
@@ -102,6 +119,7 @@ impl Kept {
             views: 0,
             counted: BTreeMap::new(),
             touched: None,
+            learned: None,
             checked: None,
         }
     }

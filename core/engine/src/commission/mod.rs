@@ -14,5 +14,5 @@ pub mod view;
 pub mod work;
 mod workflow;
 
-pub use around::{CommissionAround, Found, Made};
+pub use around::{CommissionAround, Found, InUse, Made};
 pub use workflow::CommissionWorkflow;

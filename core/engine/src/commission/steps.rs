@@ -1,7 +1,7 @@
 //! Which steps are done, and which comes next.
 
 use super::around::{CommissionAround, Made};
-use super::kept::{Kept, KeptRun};
+use super::kept::{Kept, KeptRun, Learned};
 use super::view::{CommissionDone, CommissionFigure, CommissionState, CommissionStep, CommissionStepView};
 use crate::touch::RunStanding;
 
@@ -55,12 +55,37 @@ fn touched(around: &CommissionAround, kept: Option<&Kept>) -> Made {
     Some(CommissionDone { at: done.at, figure: CommissionFigure::Unknown })
 }
 
+/// What was learned of the touches counts as long as the model in use has it, whatever is looked for later.
 fn effects(around: &CommissionAround, kept: Option<&Kept>) -> Made {
-    let found = around.found.as_ref().filter(|found| !found.is_open)?;
-    match kept.and_then(|kept| kept.touched.as_ref()) {
-        Some(touched) => found.sessions.contains(&touched.session).then(|| found.done.clone()),
-        None => counts(&Some(found.done.clone()), kept),
+    let Some(touched) = kept.and_then(|kept| kept.touched.as_ref()) else {
+        let found = around.found.as_ref().filter(|found| !found.is_open)?;
+        return counts(&Some(found.done.clone()), kept);
+    };
+    let learned = kept?.learned.as_ref().filter(|learned| learned.session == touched.session)?;
+    let is_in_use = learned.effects.iter().all(|name| around.effects.names.contains(name));
+    let figure = match learned.is_not_in_library {
+        true => CommissionFigure::NotInLibrary,
+        false => CommissionFigure::Effects(around.effects.told.clone()),
+    };
+    is_in_use.then_some(CommissionDone { at: learned.at, figure })
+}
+
+/// Keeps what a search made of the touches once it leaves nothing open; one that changed nothing in the model
+/// says nothing new.
+pub fn take_effects(kept: &mut Kept, around: &CommissionAround) {
+    let Some(touched) = &kept.touched else { return };
+    let Some(found) = around.found.as_ref().filter(|found| !found.is_open) else { return };
+    let known = kept.learned.as_ref().filter(|learned| learned.session == touched.session);
+    let is_of_these = known.is_some() || found.sessions.contains(&touched.session);
+    if !is_of_these || known.is_some_and(|known| known.effects == around.effects.names) {
+        return;
     }
+    kept.learned = Some(Learned {
+        session: touched.session.clone(),
+        effects: around.effects.names.clone(),
+        is_not_in_library: found.done.figure == CommissionFigure::NotInLibrary,
+        at: found.done.at,
+    });
 }
 
 /// A check says something of the model only when it was made after the search for effects and the look at the

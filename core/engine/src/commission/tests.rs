@@ -11,7 +11,7 @@ use super::command::CommissionCommand;
 use super::kept::FILE;
 use super::view::{CommissionDone, CommissionFigure, CommissionState, CommissionStep, CommissionView};
 use super::work::Context;
-use super::{CommissionAround, CommissionWorkflow, Found};
+use super::{CommissionAround, CommissionWorkflow, Found, InUse};
 use crate::Skipped;
 use crate::ground::jobs::JobError;
 use crate::ground::jobs::list::JobList;
@@ -206,6 +206,44 @@ fn done_anew_counts_from_now_on() {
     assert!(view.steps.iter().all(|step| step.done().is_none()), "{view:?}");
     lab.calibrated();
     assert_eq!(lab.after_s(1).now(), Some(CommissionStep::Touches));
+}
+
+#[test]
+fn what_is_looked_for_later_takes_nothing_back_but_what_changes_in_the_model_does() {
+    let mut lab = Lab::new();
+    lab.tell(START);
+    lab.calibrated();
+    lab.around.run = Some(lab.run("touches", Purpose::Train, 24, true));
+    lab.after_s(1);
+    let zero = InUse { names: vec!["joint-zero@elbow".to_owned()], told: vec!["Elbow: zero".to_owned()] };
+    lab.around.effects = zero.clone();
+    lab.around.found = Some(lab.found("touches", false));
+    lab.around.hands = Some(lab.made(SEEN));
+    lab.after_s(1);
+    lab.around.run = Some(lab.run("check", Purpose::Check, 20, true));
+    assert_eq!(lab.after_s(1).now(), Some(CommissionStep::Grasp));
+
+    lab.around.found = Some(lab.found("touches", false));
+    assert_eq!(lab.after_s(5).now(), Some(CommissionStep::Grasp), "the same was found once more");
+    lab.around.found = Some(lab.found("touches", true));
+    assert_eq!(lab.after_s(5).now(), Some(CommissionStep::Grasp), "what was found is not in use");
+    lab.around.found = None;
+    assert_eq!(lab.after_s(5).now(), Some(CommissionStep::Grasp), "newer touches made the finding old");
+
+    lab.around.effects = InUse::default();
+    assert_eq!(lab.after_s(5).now(), Some(CommissionStep::Effects), "it was taken back");
+    lab.around.effects = zero;
+    let view = lab.after_s(5);
+    assert_eq!(view.now(), Some(CommissionStep::Grasp), "and put in use again");
+    let effects = CommissionFigure::Effects(vec!["Elbow: zero".to_owned()]);
+    assert_eq!(view.of(CommissionStep::Effects).map(|done| &done.figure), Some(&effects));
+
+    lab.around.effects.names.push("backlash@elbow".to_owned());
+    lab.around.found = Some(lab.found("check", false));
+    assert_eq!(lab.after_s(5).now(), Some(CommissionStep::Check), "another model was not checked");
+    let mut lab = lab.again(Duration::from_secs(60));
+    lab.around.found = None;
+    assert_eq!(lab.after_s(1).now(), Some(CommissionStep::Check), "the same after a restart");
 }
 
 #[test]

@@ -9,7 +9,7 @@ use plumbline_model::touch_plan::Purpose;
 use super::around::CommissionAround;
 use super::command::CommissionCommand;
 use super::kept::{FILE, Kept};
-use super::steps::{LEAST_CHECKED, LEAST_TOUCHES, finished, steps};
+use super::steps::{LEAST_CHECKED, LEAST_TOUCHES, finished, steps, take_effects};
 use super::view::{CommissionSpent, CommissionView};
 use super::work::{CommissionResult, CommissionWork, Context};
 use crate::ground::jobs::JobId;
@@ -53,6 +53,7 @@ impl CommissionWorkflow {
         if let Some(run) = &around.run {
             take_run(kept, run, context.time);
         }
+        take_effects(kept, around);
         self.keep(context);
     }
 
@@ -113,6 +114,7 @@ fn take_run(kept: &mut Kept, run: &RunStanding, time: Time) {
     match run.purpose {
         Purpose::Train if run.touched >= LEAST_TOUCHES && newest(&kept.touched) => {
             kept.touched = Some(finished(run, time.day));
+            kept.learned = None;
             kept.checked = None;
         }
         Purpose::Check if run.touched >= LEAST_CHECKED && newest(&kept.checked) => {

@@ -125,10 +125,11 @@ impl EyesWorkflow {
                 self.board_seen = None;
                 self.hint = Some(CaptureHint::Captured { pair: name.clone() });
                 self.keep(&name, frame, context);
-                let count = self.collection.pairs().len();
-                context
-                    .notices
-                    .add(NoticeLevel::Success, format!("Captured {name}: {}.", counted(count, "pair")));
+                // What is captured by itself is seen where it is counted.
+                if !self.auto_capture {
+                    let count = counted(self.collection.pairs().len(), "pair");
+                    context.notices.add(NoticeLevel::Success, format!("Captured: {count} so far."));
+                }
             }
             Err(error) => context.refuse(error),
         }

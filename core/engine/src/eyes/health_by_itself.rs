@@ -39,8 +39,8 @@ pub(super) struct ByItself {
     looked_at: Option<(Of, Option<Timestamp>)>,
     /// Which calibration looked bad, and how often in a row.
     bad: Option<(Arc<StereoCalibration>, u32)>,
-    /// Which one was said to be bad.
-    told: Option<Arc<StereoCalibration>>,
+    /// Which one was said to be bad, and in which words.
+    told: Option<(Arc<StereoCalibration>, String)>,
 }
 
 impl EyesWorkflow {
@@ -129,6 +129,12 @@ impl EyesWorkflow {
         by_itself.due = Some(now + PERIOD.max(busy.div_f64(MOST_SHARE)));
     }
 
+    /// Why the calibration in use does not hold any more, as it was said; `None`: nobody has seen that.
+    pub fn does_not_hold(&self) -> Option<&str> {
+        let (of, said) = self.health.by_itself.told.as_ref()?;
+        self.in_use().is_some_and(|in_use| Arc::ptr_eq(of, in_use)).then_some(said.as_str())
+    }
+
     /// Says once that the calibration in use does not hold any more, and that it does again; whether it did.
     pub(super) fn tell_of_health(
         &mut self,
@@ -143,7 +149,7 @@ impl EyesWorkflow {
         }
         let is_cold = self.to_be_warm_min(around, context.time.instant).is_some();
         let by_itself = &mut self.health.by_itself;
-        let is_told = by_itself.told.as_ref().is_some_and(|told| Arc::ptr_eq(told, &of.in_use));
+        let is_told = by_itself.told.as_ref().is_some_and(|(told, _)| Arc::ptr_eq(told, &of.in_use));
         if health.in_use.is_good {
             by_itself.bad = None;
             if is_told {
@@ -162,10 +168,11 @@ impl EyesWorkflow {
         by_itself.bad = Some((of.in_use.clone(), times));
         if !ask.by_itself {
             // Who asked reads it where he has asked.
-            by_itself.told = Some(of.in_use.clone());
+            by_itself.told = Some((of.in_use.clone(), does_not_hold(health)));
         } else if times >= BAD_IN_A_ROW && !is_told {
-            by_itself.told = Some(of.in_use.clone());
-            context.notices.add(NoticeLevel::Warning, does_not_hold(health));
+            let said = does_not_hold(health);
+            by_itself.told = Some((of.in_use.clone(), said.clone()));
+            context.notices.add(NoticeLevel::Warning, said);
             return true;
         }
         false

@@ -60,7 +60,10 @@ impl EyesWorkflow {
                     now.0, now.1, calibrated.0, calibrated.1
                 ),
             },
-            _ => StepState::Done,
+            _ => match self.does_not_hold() {
+                Some(said) => StepState::Stale { why: said.to_owned() },
+                None => StepState::Done,
+            },
         }
     }
 }

@@ -189,7 +189,13 @@ pub struct Coverage {
 
 impl Coverage {
     /// Names of the entries of [`Coverage::by_tilt`].
-    pub const TILT_NAMES: [&'static str; 5] = ["facing", "top away", "top near", "left away", "right away"];
+    pub const TILT_NAMES: [&'static str; 5] = [
+        "facing the eyes",
+        "its top tilted away",
+        "its top tilted near",
+        "its left side turned away",
+        "its right side turned away",
+    ];
 }
 
 /// Corners per cell of an image.

@@ -31,6 +31,12 @@ impl GapWorkflow {
         named.map(|effect| effect.title.clone()).collect()
     }
 
+    /// Their names.
+    pub fn names_in_use(&self) -> Vec<String> {
+        let named = self.seen.model.effects.iter().filter(|effect| effect.is_named);
+        named.map(|effect| effect.name.clone()).collect()
+    }
+
     /// The same for who reads them one by one: of each small one, how far it moves things.
     pub fn effects_told(&self) -> Vec<String> {
         let named = self.seen.model.effects.iter().filter(|effect| effect.is_named);

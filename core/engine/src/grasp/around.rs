@@ -26,6 +26,8 @@ pub struct GraspAround {
     pub calibration: Option<Arc<StereoCalibration>>,
     /// For how long the eyes have been on, min; `None`: nobody knows.
     pub eyes_on_min: Option<f64>,
+    /// Why the calibration of the eyes does not hold any more; `None`: nobody has seen that.
+    pub eyes_off: Option<String>,
     /// Whether the mount of the eyes was calibrated.
     pub has_mount: bool,
     /// Whether it was measured where the screen lies.
@@ -69,6 +71,7 @@ impl GraspAround {
             robot: Arc::default(),
             calibration: None,
             eyes_on_min: None,
+            eyes_off: None,
             has_mount: false,
             has_screen: false,
             corrections: Corrections::default(),

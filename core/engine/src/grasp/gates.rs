@@ -176,6 +176,9 @@ fn places(around: &GraspAround) -> Gate {
     .into_iter()
     .filter_map(|(lacks, what)| lacks.then_some(what))
     .collect();
+    if let Some(said) = &around.eyes_off {
+        return doubtful("Places", said.clone());
+    }
     if lacks.is_empty() {
         return open("Places", "Lenses, mount and screen were calibrated.");
     }

@@ -39,7 +39,8 @@ impl GraspWorkflow {
         }
     }
 
-    fn in_hand(&self) -> Option<InHand> {
+    /// What is in a hand, as far as that is known.
+    pub fn in_hand(&self) -> Option<InHand> {
         self.held.as_ref().map(|held| InHand { object: held.object.clone(), hand: held.hand })
     }
 

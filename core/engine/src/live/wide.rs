@@ -21,10 +21,11 @@ pub fn wide_because(unmeasured: Unmeasured, is_told: bool, turned: Turned) -> Op
     }
 }
 
-const TURNED: &str = "The ± is wide because the eyes are not as warm as when they were calibrated: it holds how far eyes \
-     usually turn meanwhile. The clock in the top line says how long they have been on.";
-const TURNED_AND_NECK: &str = "The ± is wide because the eyes are not as warm as when they were calibrated (the clock in the top \
-     line), and nobody measured where the head looks straight ahead (the hands, in step 6, Hand-eye): it holds how far \
+const TURNED: &str = "The ± is wide because the eyes are colder or warmer than when they were calibrated: it holds how far \
+     eyes usually turn meanwhile. Where they are warm by now (the clock in the top line), calibrate them again in step 1, \
+     Eyes.";
+const TURNED_AND_NECK: &str = "The ± is wide because the eyes are colder or warmer than when they were calibrated (the clock in \
+     the top line), and nobody measured where the head looks straight ahead (the hands, in step 6, Hand-eye): it holds how far \
      both usually are off.";
 const MOUNT: &str = "The ± is wide because nobody measured how the eyes sit in the head: it holds how far that usually \
      is off. Calibrate the mount in step 2, Mount.";
@@ -67,11 +68,13 @@ mod tests {
             wide_because(Unmeasured::default(), true, Turned { apart_rad, together_rad: apart_rad })
         };
         assert_eq!(said(0.001), None);
-        assert!(said(0.006).is_some_and(|said| said.contains("not as warm as when they were calibrated")));
+        assert!(
+            said(0.006).is_some_and(|said| said.contains("colder or warmer than when they were calibrated"))
+        );
         let neck = Unmeasured { neck: true, ..Unmeasured::default() };
         let both = wide_because(neck, true, Turned { apart_rad: 0.006, together_rad: 0.006 });
         assert!(
-            both.is_some_and(|said| said.contains("not as warm") && said.contains("step 6, Hand-eye")),
+            both.is_some_and(|said| said.contains("colder or warmer") && said.contains("step 6, Hand-eye")),
             "{both:?}"
         );
     }

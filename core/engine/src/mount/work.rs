@@ -160,7 +160,7 @@ impl MountResult {
         match self {
             Self::Solved(mount) => {
                 let views = counted(mount.per_view.len(), "view");
-                format!("The mount is solved from {views}: {:.2} px.", mount.rms_px)
+                format!("The mount is solved from {views}: {:.3} px.", mount.rms_px)
             }
             Self::Saved(_) => "The calibrated mount is in use.".to_owned(),
             Self::Restored(_) => "The mount in use was read.".to_owned(),

@@ -215,7 +215,7 @@ impl Worker {
         let end = match reason.is_unheard() {
             true => TouchRun::Unheard(format!("{what} The arm holds where it is.")),
             false => TouchRun::Interrupted(format!(
-                "{what} The arm stands where it is; when its way is free, resume."
+                "{what} The arm stands where it is; when its way is free, go on."
             )),
         };
         self.touching.tell(told, end);

@@ -8,7 +8,7 @@ use plumbline_vision::mount::MountCalibration;
 use super::State;
 use super::rooms::{Neighbors, Rooms};
 use crate::commission::view::{CommissionDone, CommissionFigure};
-use crate::commission::{CommissionAround, CommissionWorkflow, Found};
+use crate::commission::{CommissionAround, CommissionWorkflow, Found, InUse};
 use crate::gap::GapWorkflow;
 use crate::grasp::view::AttemptView;
 use crate::ground::World;
@@ -24,6 +24,7 @@ impl Neighbors<CommissionWorkflow> for State {
             screen: touch.placement().map(of_screen),
             run: touch.run_standing(),
             found: of_gap(gap.of(world)),
+            effects: InUse { names: gap.of(world).names_in_use(), told: gap.of(world).effects_told() },
             hands: handeye.of(world).in_use(gap.of(world).model()).map(|seen| of_hands(seen)),
             held: grasp.of(world).held_last().map(of_grasp),
             views: eyes.pair_count() + mount.view_count(),

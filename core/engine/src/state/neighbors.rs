@@ -27,6 +27,7 @@ use crate::robot::view::MotionState;
 use crate::scores::ScoresWorkflow;
 use crate::source::SourceWorkflow;
 use crate::source::view::SourceStatus;
+use crate::touch::refusal::Held;
 use crate::touch::{TouchAround, TouchWorkflow};
 use crate::truth::{Seen, TruthAround, TruthWorkflow};
 
@@ -226,6 +227,8 @@ impl Neighbors<TouchWorkflow> for State {
             robot: self.robot.clone(),
             models: self.rooms.models.of(world).usable(),
             model: self.models.of(world).clone(),
+            held: (self.rooms.grasp.of(world).in_hand())
+                .map(|held| Held { hand: held.hand.name(), object: held.object }),
         }
     }
 
@@ -287,6 +290,7 @@ impl Neighbors<GraspWorkflow> for State {
             robot: self.robot.clone(),
             calibration: eyes.of(world).in_use().cloned(),
             eyes_on_min: self.eyes_on_s(world).map(|on_s| on_s / 60.0),
+            eyes_off: eyes.of(world).does_not_hold().map(str::to_owned),
             has_mount: mount.of(world).in_use().is_some(),
             has_screen: touch.of(world).screen().is_some(),
             corrections: Corrections {

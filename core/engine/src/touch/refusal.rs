@@ -11,7 +11,7 @@ use plumbline_model::{FormatError, PlacementError, SessionError};
 use crate::ground::text::sentence;
 
 /// Why nothing can be touched now.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Trouble {
     /// There is no arm.
     #[error("No robot is connected. Connect to the robot or the twin, then go on.")]
@@ -27,6 +27,21 @@ pub enum Trouble {
         "The touch window is closed, so no contact can be felt. Open it full screen on the touch monitor, then go on."
     )]
     WindowClosed,
+    /// A finger that touches would drop what the hand holds, onto the screen.
+    #[error(
+        "The {} hand holds the {}. Put it down first, on the screen Grasp, then go on.",
+        .0.hand, .0.object.to_lowercase()
+    )]
+    FullHand(Held),
+}
+
+/// What a hand holds.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Held {
+    /// Name of the hand.
+    pub hand: &'static str,
+    /// What.
+    pub object: String,
 }
 
 /// Why a command is not done.

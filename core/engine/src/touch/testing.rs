@@ -14,6 +14,7 @@ use plumbline_model::{Pixel, Unattended};
 
 use super::command::TouchCommand;
 use super::record::{Standing, TouchRecord};
+use super::refusal::Held;
 use super::view::{TouchPhase, TouchView};
 use super::work::{Context, TouchWork};
 use super::{TouchAround, TouchWorkflow};
@@ -64,6 +65,8 @@ pub struct Desk {
     pub rig: Arc<Rig>,
     pub models: Vec<Arc<CorrectionModel>>,
     pub model: Arc<RobotModel>,
+    /// What the hand holds.
+    pub in_hand: Option<Held>,
     pub notices: Notices,
     /// What the robot's thread was told and the test has not looked at.
     pub controls: VecDeque<RobotControl>,
@@ -95,6 +98,7 @@ impl Desk {
             rig: rig.clone(),
             models: vec![],
             model: Arc::new(RobotModel::nominal(rig.clone())),
+            in_hand: None,
             notices: Notices::default(),
             controls: VecDeque::new(),
             bias_px: (8.0, -5.0),
@@ -119,7 +123,13 @@ impl Desk {
 
     fn around(&self) -> TouchAround {
         let robot = Arc::new(self.robot.clone());
-        TouchAround { rig: self.rig.clone(), robot, models: self.models.clone(), model: self.model.clone() }
+        TouchAround {
+            rig: self.rig.clone(),
+            robot,
+            models: self.models.clone(),
+            model: self.model.clone(),
+            held: self.in_hand.clone(),
+        }
     }
 
     /// Does the work that was asked for, and what follows from it.

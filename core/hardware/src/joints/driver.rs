@@ -163,9 +163,11 @@ impl ArmDriver {
             || Refusal::Unknown { joint: JointIndex(0), name: "the arm".to_owned(), why: Unheard::Silent };
         let joints: Vec<JointIndex> = wanted.goals.iter().map(|(joint, _)| *joint).collect();
         self.chains.check(&self.limiter.rig, &joints, &state.unknown, &state.late)?;
-        let start = state.commanded.as_ref().ok_or_else(unknown)?;
+        let sent = state.commanded.as_ref().ok_or_else(unknown)?;
         let present = state.measured.as_ref().ok_or_else(unknown)?;
-        let line = self.limiter.plan(start, present, wanted)?;
+        let at_rest = if matches!(state.motion, Motion::Holding(_)) { joints.as_slice() } else { &[] };
+        let start = self.limiter.set_out(sent, present, &joints, at_rest);
+        let line = self.limiter.plan(&start, present, wanted)?;
         // The limiter bounds it.
         Ok(duration::seconds(line.duration_s).unwrap_or_default())
     }

@@ -189,6 +189,31 @@ impl Limiter {
         Ok(())
     }
 
+    /// Where joints set out from that were sent there: one that hangs farther from its goal than one step, from where
+    /// it is. So do all those at rest where they were sent on into something: a finger that was lowered onto the glass
+    /// presses on it, and each way that set out from its goals would begin in there.
+    pub fn set_out(
+        &self,
+        sent: &Posture,
+        present: &Posture,
+        joints: &[JointIndex],
+        at_rest: &[JointIndex],
+    ) -> Posture {
+        let mut start = sent.clone();
+        for joint in joints {
+            // NaN fails the comparison.
+            if !((start[*joint] - present[*joint]).abs() <= self.rig.gate.step_rad) {
+                start[*joint] = present[*joint];
+            }
+        }
+        if self.guarded(present, &present.with(at_rest, &start.of(at_rest))).is_err() {
+            for joint in at_rest {
+                start[*joint] = present[*joint];
+            }
+        }
+        start
+    }
+
     fn guarded(&self, present: &Posture, goal: &Posture) -> Result<(), Refusal> {
         self.guards.iter().try_for_each(|guard| guard.check(present, goal))
     }

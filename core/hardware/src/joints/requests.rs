@@ -114,7 +114,8 @@ impl Controller {
     }
 
     /// Whether these joints may move at all; where they are commanded to be, and where they are. A
-    /// joint that hangs farther from its goal than one step sets out from where it is.
+    /// joint that hangs farther from its goal than one step sets out from where it is, and so do all
+    /// of them that stand before something that they were sent into.
     pub(super) fn may_move(&mut self, joints: &[JointIndex]) -> Result<(Posture, Posture), Refusal> {
         if self.options.stop.is_pressed() {
             return Err(Refusal::Stopped);
@@ -139,13 +140,13 @@ impl Controller {
             )
         };
         let measured = self.measured().ok_or_else(not_known)?;
-        let mut commanded = self.commanded.clone().ok_or_else(not_known)?;
-        for joint in joints {
-            // NaN fails the comparison.
-            if !((commanded[*joint] - measured[*joint]).abs() <= self.limiter.rig.gate.step_rad) {
-                commanded[*joint] = measured[*joint];
-            }
-        }
+        let sent = self.commanded.clone().ok_or_else(not_known)?;
+        // A grip presses on purpose.
+        let grips = |joint: &&JointIndex| self.grips.iter().any(|grip| grip.joint == **joint);
+        let stands = matches!(self.mode, Mode::Hold(_));
+        let at_rest: Vec<JointIndex> =
+            joints.iter().filter(|joint| stands && !grips(joint)).copied().collect();
+        let commanded = self.limiter.set_out(&sent, &measured, joints, &at_rest);
         self.commanded = Some(commanded.clone());
         Ok((commanded, measured))
     }

@@ -1,15 +1,16 @@
 //! Gates and watchdogs: when the arm holds by itself.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use plumbline_hardware::dynamixel::Item;
 use plumbline_hardware::joints::{
-    ArmOptions, Guard, Heartbeat, HoldReason, Motion, MoveOutcome, Refusal, Setpoint, SetpointKind,
+    ArmOptions, Guard, Heartbeat, HoldReason, JointState, Motion, MoveOutcome, Refusal, Setpoint,
+    SetpointKind,
 };
 
-use plumbline_model::robot::Posture;
+use plumbline_model::robot::{JointIndex, Posture};
 
 use super::world::{assert_goals_stay_near, await_state, id_of, joint, ready, ready_with, run, turn};
 
@@ -154,6 +155,44 @@ fn a_guard_of_the_caller_is_asked_before_and_on_the_way() {
     let outcome = driver.wait_for(id, Duration::from_secs(2));
     assert_eq!(outcome, Some(MoveOutcome::Held(HoldReason::Refused(cup()))));
     assert_goals_stay_near(&rig, &chain);
+}
+
+/// Something that no joint may be turned into farther than it is: at this angle of this joint, rad.
+struct Wall(JointIndex, Mutex<f64>);
+
+impl Guard for Wall {
+    fn check(&self, present: &Posture, goal: &Posture) -> Result<(), Refusal> {
+        let at_rad = *self.1.lock().expect("not poisoned");
+        match goal[self.0] > at_rad.max(present[self.0]) {
+            true => Err(Refusal::Guarded("a wall is in the way".to_owned())),
+            false => Ok(()),
+        }
+    }
+}
+
+#[test]
+fn what_was_sent_into_something_comes_away_from_where_it_stands() {
+    let pan = joint(&super::world::nico(), "head_z");
+    let wall = Arc::new(Wall(pan, Mutex::new(1.0)));
+    let (rig, chain, driver) = ready_with(ArmOptions { guards: vec![wall.clone()], ..ArmOptions::default() });
+    assert!(matches!(run(&driver, pan, 0.2, 0.3), MoveOutcome::Arrived { .. }), "it stands before the wall");
+    chain.lock().servos.get_mut(&id_of(&rig, pan)).expect("there").blocked = true;
+    let setpoint = Setpoint {
+        kind: SetpointKind::Position,
+        joints: vec![(pan, 0.4)],
+        valid_for: Duration::from_secs(2),
+    };
+    driver.follow(setpoint);
+    let sent_rad = |state: &JointState| state.commanded.as_ref().map_or(0.0, |sent| sent[pan]);
+    await_state(&driver, "sent on", |state| sent_rad(state) > 0.215);
+    // From now on nothing may meet: the goal stays where it was sent, and that is in the wall.
+    *wall.1.lock().expect("not poisoned") = 0.205;
+    let state = await_state(&driver, "refused", |state| matches!(state.motion, Motion::Holding(_)));
+    assert!(sent_rad(&state) > 0.21, "{}", sent_rad(&state));
+    assert!(driver.check(&turn(pan, 0.0, 0.3)).is_ok());
+    let outcome = run(&driver, pan, 0.0, 0.3);
+    assert!(!matches!(outcome, MoveOutcome::Refused(_)), "the way away begins where it stands: {outcome:?}");
+    assert!(sent_rad(&driver.state()) < 0.205, "and its goal is out of the wall");
 }
 
 #[test]

@@ -35,7 +35,7 @@ pub(super) fn said(view: &View) -> Said {
         !slipped && run.is_some_and(|run| run.outcome == Some(GraspOutcome::Success) && run.told.is_none());
     if held {
         return Said::press(
-            "The fingers meet something. Look: is it held? If not, say Not held in the pane Grasp.",
+            "The fingers meet something. Look: is it held, or not?",
             "Say that it is held",
             vec![Action::Grasp(GraspAction::Held)],
         );

@@ -25,6 +25,7 @@ use crate::ground::jobs::JobId;
 use crate::ground::jobs::list::JobList;
 use crate::ground::notice::Notices;
 use crate::ground::stage::Skipped;
+use crate::ground::step::StepState;
 use crate::ground::{Asked, Context, LongWork as _, Moment, Nothing, Time, Workflow as _};
 use crate::source::view::{ReplayView, SourceStatus, SourceView};
 
@@ -482,6 +483,7 @@ fn a_calibration_that_does_not_hold_is_told_once() {
     let [words] = &said[..] else { panic!("{said:?}") };
     assert!(words.contains("does not hold any more") && words.contains("cm far"), "{words}");
     assert!(!desk.view().health.judged.as_ref().expect("judged").in_use.is_good);
+    assert_eq!(desk.view().step, StepState::Stale { why: words.clone() }, "it stays to be seen");
     // Who asks reads it where he has asked.
     assert!(!desk.health().in_use.is_good);
     assert_eq!(desk.said().len(), 1);

@@ -25,12 +25,12 @@ fn worst(off_m: [f64; 3]) -> f64 {
 /// Whether the calibration in use holds.
 pub(super) fn of_health(told: &ToldHealth) -> Measured {
     let ToldHealth { at, health, is_live } = told;
-    let [near, middle, far] = health.in_use.off_m.map(|off_m| format!("{:.1} cm", 100.0 * off_m));
+    let [near, middle, far] = health.in_use.off_m.map(|off_m| format!("{:.0}", 1e3 * off_m));
     let holds = if health.in_use.is_good { "still good" } else { "not good any more" };
     // Images of another day say how the eyes were then.
     let by = if *is_live { "" } else { ", by images taken before" };
     let in_use = format!(
-        "calibration in use {holds}{by}: places off by {near} near, {middle} in the middle, {far} far"
+        "calibration in use {holds}{by}: off by {near}, {middle} and {far} mm near, in the middle and far"
     );
     let from = format!(
         "how far off places come out where that is most, by {} in {}",
@@ -150,7 +150,8 @@ mod tests {
         let alone = told(health, true);
         assert_eq!((alone.before, alone.after), (None, Figure::Meters(0.021)));
         assert!(
-            alone.title.contains("not good any more") && alone.title.contains("2.1 cm far"),
+            alone.title.contains("not good any more")
+                && alone.title.contains("21 mm near, in the middle and far"),
             "{}",
             alone.title
         );

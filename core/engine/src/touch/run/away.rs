@@ -23,7 +23,7 @@ impl Run {
         if self.progress.prepared == AS_IT_LIES {
             return self.finish(now, context);
         }
-        if let Some(trouble) = now.trouble {
+        if let Some(trouble) = &now.trouble {
             self.phase = Phase::Paused(Some(trouble.to_string()));
             return;
         }

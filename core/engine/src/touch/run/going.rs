@@ -32,7 +32,7 @@ impl Run {
             return;
         }
         let Some(aim) = self.next().cloned() else { return self.put_back(now, context) };
-        if let Some(trouble) = now.trouble {
+        if let Some(trouble) = &now.trouble {
             self.phase = Phase::Paused(Some(trouble.to_string()));
             return;
         }

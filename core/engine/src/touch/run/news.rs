@@ -153,7 +153,7 @@ impl Run {
             self.patience.end();
             return;
         };
-        let trouble = now.trouble.map(|trouble| trouble.to_string());
+        let trouble = now.trouble.as_ref().map(ToString::to_string);
         match self.patience.look(now.robot, trouble, &self.joints, context.time.instant) {
             Look::Same => {}
             Look::GoesOn => {

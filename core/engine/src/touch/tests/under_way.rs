@@ -10,6 +10,7 @@ use super::{folder, paused, rows};
 use crate::robot::view::Connection;
 use crate::robot::{RobotControl, TouchOrder, TouchRun, TouchStage};
 use crate::touch::command::{ContactWith, ScreenContact, ScreenWindow, TouchCommand};
+use crate::touch::refusal::Held;
 use crate::touch::run::MISSES;
 use crate::touch::store::REJECTED;
 use crate::touch::testing::{Desk, grid, only_session};
@@ -95,6 +96,26 @@ fn a_pause_is_after_the_touch_and_stop_tries_it_again() {
     desk.robot.connection = Connection::Connected { to: "test".to_owned(), twin: true };
     desk.apply(TouchCommand::Resume);
     assert_eq!(desk.order().map(|order| order.number), Some(again.number));
+}
+
+#[test]
+fn nothing_is_touched_with_a_full_hand() {
+    let folder = folder();
+    let mut desk = Desk::new(folder.path());
+    desk.in_hand = Some(Held { hand: "right", object: "Tomato".to_owned() });
+    desk.apply(TouchCommand::Plan(grid(2, 2)));
+    desk.apply(TouchCommand::Start);
+    assert!(desk.order().is_none() && !folder.path().join("sessions").exists());
+    let said = desk.said();
+    assert!(said.contains("The right hand holds the tomato. Put it down first"), "{said}");
+    desk.in_hand = None;
+    desk.apply(TouchCommand::Start);
+    let order = desk.order().expect("the hand is empty");
+    desk.apply(TouchCommand::Pause);
+    desk.touch(&order);
+    desk.in_hand = Some(Held { hand: "right", object: "Tomato".to_owned() });
+    desk.apply(TouchCommand::Resume);
+    assert!(desk.order().is_none() && desk.said().contains("holds the tomato"));
 }
 
 #[test]

@@ -19,7 +19,7 @@ use plumbline_model::touchscreen::ScreenPlacement;
 use super::command::{Correction, ScreenWindow, TouchCommand};
 use super::placement::Proposal;
 use super::plan::RunPlan;
-use super::refusal::{Refusal, Trouble};
+use super::refusal::{Held, Refusal, Trouble};
 use super::run::{Phase, Run};
 use super::seen::Seen;
 use super::store::Runs;
@@ -41,6 +41,8 @@ pub struct TouchAround {
     pub models: Vec<Arc<CorrectionModel>>,
     /// The robot as it is known.
     pub model: Arc<RobotModel>,
+    /// What a hand holds.
+    pub held: Option<Held>,
 }
 
 /// The whole workflow, of one world.
@@ -161,7 +163,7 @@ impl TouchWorkflow {
         } else if source(robot) == ContactSource::Window && self.window.is_none() {
             Some(Trouble::WindowClosed)
         } else {
-            None
+            around.held.clone().map(Trouble::FullHand)
         }
     }
 }

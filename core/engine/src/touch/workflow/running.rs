@@ -34,8 +34,8 @@ impl TouchWorkflow {
             TouchCommand::Resume => {
                 // Writing to disk needs no arm.
                 let needs_arm = !run.progress.finished && !matches!(run.phase, Phase::Stuck(_));
-                if let (Some(trouble), true) = (now.trouble, needs_arm) {
-                    return Err(trouble.into());
+                if let (Some(trouble), true) = (&now.trouble, needs_arm) {
+                    return Err(trouble.clone().into());
                 }
                 if run.phase != Phase::Working || run.pause {
                     run.resume();

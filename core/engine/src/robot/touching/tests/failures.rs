@@ -72,7 +72,7 @@ fn stop_ends_every_stage_where_the_arm_is() {
         let asked = bench.arm().asked.len();
         bench.switches.stop.press();
         let text = interrupted(bench.until_end(|_| {}));
-        assert!(text.contains("STOP was pressed") && text.contains("resume"), "{text}");
+        assert!(text.contains("STOP was pressed") && text.contains("go on"), "{text}");
         let moved = bench.arm().asked[asked..].iter().any(|asked| *asked != Asked::Hold);
         assert!(!moved, "{stage:?}");
         stands(&mut bench);
