@@ -315,6 +315,11 @@ mod tests {
         }
         assert_eq!(notifications.history().count(), MOST_KEPT);
         assert_eq!(notifications.history().next().map(|n| n.text.as_str()), Some("pair 499"));
-        assert_eq!(notifications.on_screen(Instant::now()).count(), MOST_TOASTS);
+        let on_screen =
+            |of: &Notifications| of.on_screen(Instant::now()).map(|n| n.text.clone()).collect::<Vec<_>>();
+        // The warning has scrolled out of what is kept.
+        assert_eq!(on_screen(&notifications), ["pair 499"], "of those that ask for nothing only the newest");
+        (0..9).for_each(|i| notifications.push(Severity::Warning, format!("servo {i} is hot")));
+        assert_eq!(on_screen(&notifications).len(), MOST_TOASTS);
     }
 }

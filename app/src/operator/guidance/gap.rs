@@ -4,8 +4,8 @@ use plumbline_engine::View;
 use plumbline_engine::view::{GapView, ShownFinding};
 
 use super::sentence::{Guidance, say};
-use crate::operator::snapshot::gap::Verdict;
-use crate::operator::words::gap::{add_label, on_held_out, touch_label};
+use crate::operator::snapshot::gap::{Finding, Verdict};
+use crate::operator::words::gap::{add_label, heading, on_held_out, touch_label};
 use crate::operator::words::proof::{Proof, Worth, proven_before};
 use crate::operator::{Action, GapAction, Screen};
 
@@ -49,7 +49,7 @@ fn next(gap: &GapView) -> Guidance {
 
 fn found(view: &View, shown: &ShownFinding) -> Guidance {
     let finding = &shown.finding;
-    let guidance = say(finding.sentence.clone());
+    let guidance = say(in_a_line(finding));
     let (addable, wanted) = (view.gap.addable(), view.gap.wanted());
     let experiment = GapAction::NextExperiment.refusal(view).is_none();
     let unsure = finding.effects.iter().any(|effect| effect.probability < SURE);
@@ -65,6 +65,17 @@ fn found(view: &View, shown: &ShownFinding) -> Guidance {
         _ if experiment => touch(guidance),
         _ => guidance,
     }
+}
+
+/// What the bottom line has room for at the smallest width of the window, letters.
+const LINE: usize = 200;
+
+/// What was found, or where all of it stands.
+fn in_a_line(finding: &Finding) -> String {
+    if finding.sentence.chars().count() <= LINE {
+        return finding.sentence.clone();
+    }
+    format!("{}. The pane Name and add says all of it.", heading(finding).trim_end_matches('.'))
 }
 
 /// What was found is in the model: touches with it and without it tell what it is worth.

@@ -1,7 +1,7 @@
 //! What to do next with touching the screen: one button, named by what it does.
 
 use plumbline_engine::view::{
-    Figure, PlanView, StepState, Subject, TouchCounts, TouchOutcome, TouchPhase, TouchView,
+    Figure, PlanView, StepState, Subject, TouchCounts, TouchFigures, TouchOutcome, TouchPhase, TouchView,
 };
 use plumbline_engine::{Correction, View};
 use plumbline_model::touch_plan::{Finger, Purpose};
@@ -241,7 +241,7 @@ fn checked(view: &View, touched: &str) -> Guidance {
         };
     }
     let beside = beside_held_out(view, figures.mean_m).unwrap_or_default();
-    let said = format!("{touched} checked: {}{beside}", lands(view, figures.mean_m));
+    let said = format!("{touched} checked: {}{beside}", lands(view, &figures));
     if touch.correct_with.is_some() {
         return say(format!("{said} It stands on the timeline. Next: grasp."))
             .then("Go to Grasp", Action::Go(Screen::Grasp));
@@ -249,11 +249,18 @@ fn checked(view: &View, touched: &str) -> Guidance {
     say(format!("{said} Nothing corrected these targets.")).then("Plan new targets", again)
 }
 
+/// What lies so many times the mean off is said by itself.
+const FAR_OFF: f64 = 3.0;
+
 /// How far beside its target the finger lands, and did without a model, a sentence.
-fn lands(view: &View, mean_m: f64) -> String {
+fn lands(view: &View, figures: &TouchFigures) -> String {
+    let mean_m = figures.mean_m;
     let before = before_check_m(view, mean_m)
         .map_or_else(String::new, |before_m| format!(", {} without a model", format::mm(before_m)));
-    format!("the finger lands {} beside the target, on average{before}.", format::mm(mean_m))
+    let far = (figures.largest_m > FAR_OFF * mean_m)
+        .then(|| format!("; once {}: look at that one on the map", format::mm(figures.largest_m)));
+    let far = far.unwrap_or_default();
+    format!("the finger lands {} beside the target, on average{before}{far}.", format::mm(mean_m))
 }
 
 /// A check that misses by so much more than was left on held-out rows asks why.
@@ -278,7 +285,7 @@ pub fn check_in_words(view: &View) -> Option<String> {
     let options = &touch.plan.as_ref()?.options;
     let is_over = touch.phase == TouchPhase::Finished && options.purpose == Purpose::Check;
     let figures = touch.figures.filter(|_| is_over && !options.beside_described)?;
-    Some(capitalized(&lands(view, figures.mean_m)))
+    Some(capitalized(&lands(view, &figures)))
 }
 
 /// A check on the timeline is the one that is shown when both miss by the same, m.
@@ -323,7 +330,7 @@ fn first(view: &View) -> Guidance {
 mod tests {
     use std::sync::Arc;
 
-    use plumbline_engine::view::{EntryKind, InUseNow, TimelineEntry, TimelineView, TouchFigures};
+    use plumbline_engine::view::{EntryKind, InUseNow, TimelineEntry, TimelineView};
     use plumbline_model::robot::default_rig;
     use plumbline_model::touch_plan::{PlanOptions, TouchArea};
 

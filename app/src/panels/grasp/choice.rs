@@ -72,11 +72,8 @@ fn methods(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         .map(|known| method(known.method))
         .collect();
     if !lacking.is_empty() {
-        let needs = if lacking.len() == 1 { "needs" } else { "need" };
-        let said = format!(
-            "{} {needs} models trained from touches: step 4, Models.",
-            listed(&lacking.iter().map(String::as_str).collect::<Vec<_>>())
-        );
+        let names = listed(&lacking.iter().map(String::as_str).collect::<Vec<_>>());
+        let said = format!("For {names} train models from touches first: step 4, Models.");
         ui.label(theme::small(ui, said));
     }
 }

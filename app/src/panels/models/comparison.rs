@@ -198,7 +198,7 @@ fn decide(ui: &mut Ui, cx: &mut PanelContext<'_>, facts: &Facts) {
 fn in_use(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let models = &cx.view.models;
     let said = match &models.in_use {
-        Some(model) => format!("In use: {}", provenance(model)),
+        Some(model) => format!("In use: {}{}", provenance(model), beside_effects(cx.view)),
         None => format!("No model is in use: targets are {}.", without_a_model(cx.view)),
     };
     ui.label(said);
@@ -208,6 +208,18 @@ fn in_use(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             action_button(ui, cx, ModelsAction::UseNone, "Use none");
         }
     });
+}
+
+/// Which of both corrects targets, where there are effects beside the model that is in use.
+fn beside_effects(view: &View) -> &'static str {
+    match view.touch.correct_with {
+        _ if view.gap.model.effects.is_empty() => "",
+        Some(Correction::Effects) => ". Targets are corrected by the named effects now, not by it.",
+        Some(Correction::Model(_)) => {
+            ". Targets are corrected by it alone: the named effects wait meanwhile."
+        }
+        None => ". Targets are sent as they are now: neither it nor the named effects correct them.",
+    }
 }
 
 /// What happens to targets where no model is in use.

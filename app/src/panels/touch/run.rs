@@ -95,8 +95,13 @@ fn head(ui: &mut Ui, cx: &mut PanelContext<'_>) {
 fn finished(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let counts = cx.view.touch.counts;
     let mut text = format!("Finished: {} count", words::touches(counts.touched));
-    let rest =
-        [(counts.missed, "without contact"), (counts.skipped, "skipped"), (counts.rejected, "rejected")];
+    let never = wanted(counts).saturating_sub(done_of(counts));
+    let rest = [
+        (counts.missed, "without contact"),
+        (counts.skipped, "skipped"),
+        (counts.rejected, "rejected"),
+        (never, "never made"),
+    ];
     for (count, what) in rest.into_iter().filter(|(count, _)| *count > 0) {
         text.push_str(&format!(", {count} {what}"));
     }
@@ -132,15 +137,16 @@ fn finished(ui: &mut Ui, cx: &mut PanelContext<'_>) {
 /// Asks once more in place: what is left of the plan would have to be begun anew.
 fn finish_button(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let asked = cx.state.touch.finishing;
+    // Where "Finish" was: pressed twice by mistake, it ends nothing.
+    if asked && ui.button("Not yet").clicked() {
+        cx.state.touch.finishing = false;
+    }
     let text = if asked { "Finish now" } else { "Finish" };
     if ui.button(text).on_hover_text("Ends the run with what there is; the session stays").clicked() {
         cx.state.touch.finishing = !asked;
         if asked {
             cx.outbox.act(Action::Touch(TouchAction::Finish));
         }
-    }
-    if asked && ui.button("Not yet").clicked() {
-        cx.state.touch.finishing = false;
     }
 }
 
@@ -184,7 +190,7 @@ fn figures(ui: &mut Ui, found: &TouchFigures) {
         let (label, mean) = if low > 0.0 {
             ("mean error, ± 95 %", format::mm_with(found.mean_m, (high - low) / 2.0))
         } else {
-            ("mean error, too few touches for a ±", format::mm(found.mean_m))
+            ("mean error, too scattered for a ±", format::mm(found.mean_m))
         };
         let mean = big_figure(ui, label, &mean, Role::Difference);
         mean.on_hover_text(format!(

@@ -234,13 +234,13 @@ impl ModelsWorkflow {
         }
     }
 
-    /// What goes out of use and is not replaced can be used again.
-    fn offer_again(&mut self, history: &History, none: bool) {
+    /// What goes out of use can be used again, unless another one of its kind takes its place.
+    fn offer_again(&mut self, history: &History, by: Option<Method>) {
         let Some(before) = &self.history else { return };
         let is_undone = history.entries.len() < before.entries.len();
         let (Some(kept), Some(in_use)) = (before.in_use(), &self.in_use) else { return };
         let method = in_use.model.method();
-        if (is_undone || none) && !self.proposals.contains_key(&method) {
+        if (is_undone || by != Some(method)) && !self.proposals.contains_key(&method) {
             let map = Arc::new(ModelMap { proposed: true, ..(*in_use.map).clone() });
             let proposal = Proposal { model: in_use.model.clone(), map, screen_m: kept.screen_m };
             self.proposals.insert(method, proposal);
@@ -253,7 +253,7 @@ impl ModelsWorkflow {
         model: Option<Arc<CorrectionModel>>,
         map: Option<Arc<ModelMap>>,
     ) {
-        self.offer_again(&history, model.is_none());
+        self.offer_again(&history, model.as_ref().map(|model| model.method()));
         self.history = Some(history);
         let accepted = model.as_ref().and_then(|model| {
             let proposed = self.proposals.get(&model.method())?;

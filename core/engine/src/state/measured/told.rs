@@ -159,7 +159,7 @@ mod tests {
         let both = told(health, true);
         assert!(!both.title.contains("taken before"), "{}", both.title);
         let recorded = told(health, false);
-        assert!(recorded.title.contains("by images taken before: places off"), "{}", recorded.title);
+        assert!(recorded.title.contains("by images taken before: off"), "{}", recorded.title);
         assert_eq!((both.before, both.after), (Some(Figure::Meters(0.021)), Figure::Meters(0.006)));
         assert!(both.basis.contains("120 places in 4 pairs") && both.basis.contains("the one proposed"));
     }
