@@ -13,6 +13,8 @@ use crate::theme::{self, Tokens, space};
 const MOST_KEPT: usize = 200;
 const MOST_TOASTS: usize = 4;
 const WIDTH: f32 = 340.0;
+/// Of a message that passes by.
+const MOST_LETTERS: usize = 220;
 
 /// How much a message matters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -242,7 +244,7 @@ fn toast(ui: &mut Ui, notification: &Notification) -> ToastAsked {
         ui.horizontal_top(|ui| {
             severity_sign(ui, notification.severity);
             let close = 64.0;
-            let words = RichText::new(notification.words()).color(tokens.text_strong);
+            let words = RichText::new(shortened(notification.words())).color(tokens.text_strong);
             let words = egui::Label::new(words).wrap().selectable(false).sense(egui::Sense::click());
             // What it covers is one press away, wherever that goes.
             let size = vec2(WIDTH - 30.0 - close - space::S, 0.0);
@@ -260,9 +262,28 @@ fn toast(ui: &mut Ui, notification: &Notification) -> ToastAsked {
     inner.inner
 }
 
+/// What passes by covers little; all of a message stands in the list.
+fn shortened(words: String) -> String {
+    let Some((most, _)) = words.char_indices().nth(MOST_LETTERS) else { return words };
+    let end = words[..most].rfind(' ').unwrap_or(most);
+    format!("{}… All of it stands in Messages.", &words[..end])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_long_message_passes_by_shortened() {
+        assert_eq!(shortened("The run is finished.".to_owned()), "The run is finished.");
+        let long = "Größe des Fehlers ".repeat(40);
+        let said = shortened(long);
+        assert!(
+            said.chars().count() < MOST_LETTERS + 40 && said.ends_with("… All of it stands in Messages."),
+            "{said}"
+        );
+        assert!(shortened("x".repeat(500)).starts_with(&"x".repeat(MOST_LETTERS)));
+    }
 
     #[test]
     fn messages_leave_the_screen_but_not_the_history() {

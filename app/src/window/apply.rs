@@ -95,11 +95,13 @@ impl PlumblineWindow {
             Action::Trials(TrialsAction::Export(format)) => self.ask_for(ctx, Question::Trials(format)),
             Action::Grid(GridAction::Open) => self.ask_for(ctx, Question::GridSession),
             Action::Commission(action) => self.act_on_commission(ctx, action),
-            Action::Next if self.view.commission.is_on && self.commission_rest.is_on(ctx) => {}
+            Action::Next if self.view.commission.is_on && self.commission_rest.is_on(ctx) => {
+                self.commission_rest.go_on(ctx);
+            }
             Action::Next if self.view.commission.is_on => {
                 self.act_on_commission(ctx, CommissionAction::Next);
             }
-            Action::Next if self.primary_rest.is_on(ctx) => {}
+            Action::Next if self.primary_rest.is_on(ctx) => self.primary_rest.go_on(ctx),
             Action::Next => {
                 if let Some(next) = guidance(&self.view, self.settings.screen).next {
                     self.act(ctx, next.action);

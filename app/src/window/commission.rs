@@ -94,7 +94,8 @@ fn next(window: &PlumblineWindow, course: &Course, ui: &mut Ui, outbox: &mut Out
             }
             if let Some(no) = otherwise(actions) {
                 ui.reset_style();
-                if ui.add_enabled(!resting, egui::Button::new(no.label())).clicked() {
+                let button = ui.add_enabled(!resting, egui::Button::new(no.label()));
+                if button.on_disabled_hover_text(super::rest::WHY).clicked() {
                     outbox.act(no);
                 }
             }

@@ -9,13 +9,14 @@ pub(super) const WHY: &str = "It meant something else a moment ago: wait half a 
 /// What a button means, and since when.
 pub(super) struct Rest<T> {
     meaning: Option<T>,
+    since_s: f64,
     until_s: f64,
     is_new: bool,
 }
 
 impl<T> Default for Rest<T> {
     fn default() -> Self {
-        Self { meaning: None, until_s: f64::NEG_INFINITY, is_new: true }
+        Self { meaning: None, since_s: f64::NEG_INFINITY, until_s: f64::NEG_INFINITY, is_new: true }
     }
 }
 
@@ -26,11 +27,14 @@ impl<T: PartialEq> Rest<T> {
         let now_s = ctx.input(|input| input.time);
         if self.meaning != meaning {
             self.meaning = meaning;
-            self.until_s = if self.is_new { f64::NEG_INFINITY } else { now_s + REST_S };
+            (self.since_s, self.until_s) = match self.is_new {
+                true => (f64::NEG_INFINITY, f64::NEG_INFINITY),
+                false => (now_s, now_s + REST_S),
+            };
         }
         self.is_new = false;
         // Who goes on hammering has not seen yet what it means now.
-        let hammers = ctx.input(|input| input.pointer.any_pressed() || input.key_pressed(egui::Key::Enter));
+        let hammers = ctx.input(|input| input.pointer.any_pressed());
         if hammers && now_s < self.until_s {
             self.until_s = now_s + REST_S;
         }
@@ -41,8 +45,19 @@ impl<T: PartialEq> Rest<T> {
 
     /// It was pressed: what it means next is not pressed by the same hand.
     pub(super) fn begin(&mut self, ctx: &egui::Context) {
-        self.until_s = ctx.input(|input| input.time) + REST_S;
+        self.since_s = ctx.input(|input| input.time);
+        self.until_s = self.since_s + REST_S;
         ctx.request_repaint_after_secs(REST_S as f32);
+    }
+
+    /// It was pressed all the same, by a key: whoever hammers has not seen yet what it means now.
+    pub(super) fn go_on(&mut self, ctx: &egui::Context) {
+        self.until_s = ctx.input(|input| input.time) + REST_S;
+    }
+
+    /// The same for what ends something: pressing it does not make it rest for longer.
+    pub(super) fn is_on_at_first(&self, ctx: &egui::Context) -> bool {
+        ctx.input(|input| input.time) < self.since_s + REST_S
     }
 
     /// Whether it is not to be pressed yet.

@@ -26,7 +26,13 @@ pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbo
     let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(margin);
     let bottom = Panel::bottom("bottom line").frame(frame).exact_size(HEIGHT).show_separator_line(false);
     bottom.show(ui, |ui| {
-        let resting = window.primary_rest.is_on(ui.ctx());
+        let resting = match next {
+            // What ends something is not locked by pressing it.
+            None | Some(Action::Touch(TouchAction::Pause) | Action::Grasp(GraspAction::Pause)) => {
+                window.primary_rest.is_on_at_first(ui.ctx())
+            }
+            Some(_) => window.primary_rest.is_on(ui.ctx()),
+        };
         let layout = Layout::right_to_left(Align::Center);
         ui.with_layout(layout, |ui| contents(&window.view, line, resting, ui, outbox));
     });

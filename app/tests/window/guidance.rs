@@ -12,6 +12,7 @@ use plumbline_engine::view::{
 use plumbline_engine::{Command, EyesCommand, JobCommand, JobId, SourceCommand, View};
 
 use crate::fake::{Fake, click, says, shows};
+use crate::made_up::everything;
 use crate::made_up_touch::{running, with_touch};
 
 fn on(screen: Screen) -> WindowSettings {
@@ -155,10 +156,13 @@ fn a_button_that_means_something_new_rests_for_half_a_second() {
         repeat: false,
         modifiers,
     };
-    // All of it within one frame.
-    window.input_mut().events.extend([egui::Event::PointerMoved(pos), button(true), button(false), key]);
-    window.run_steps(1);
-    assert_eq!(fake.take_sent(), [], "who hammers the button before presses nothing");
+    // All of it within one frame, and on and on.
+    for _ in 0..6 {
+        let hammered = [egui::Event::PointerMoved(pos), button(true), button(false), key.clone()];
+        window.input_mut().events.extend(hammered);
+        window.run_steps(1);
+    }
+    assert_eq!(fake.take_sent(), [], "who hammers the button before presses nothing, however long");
     window.run_steps(2);
     assert!(enabled(&window));
     click(&mut window, "Use all 30 pairs of this folder");
@@ -167,6 +171,45 @@ fn a_button_that_means_something_new_rests_for_half_a_second() {
     window.input_mut().events.extend([egui::Event::PointerMoved(pos), button(true), button(false)]);
     window.run_steps(1);
     assert_eq!(fake.take_sent().len(), 1);
+}
+
+#[test]
+fn a_calibration_of_the_eyes_that_does_not_hold_is_said_and_leads_to_a_new_one() {
+    let mut view = everything();
+    let why = "The calibration of the eyes does not hold any more: places are off by 3.2 cm far.".to_owned();
+    Arc::make_mut(&mut view.eyes).health.does_not_hold = Some(why);
+    let fake = Fake::over(view);
+    let mut window = fake.window(on(Screen::Live));
+    assert!(says(&window, "does not hold any more"));
+    click(&mut window, "Calibrate the eyes again");
+    assert!(shows(&window, "Coverage"), "where pairs are collected");
+}
+
+#[test]
+fn who_hammers_the_button_that_began_work_does_not_cancel_it() {
+    let fake = Fake::over(View { source: folder_of(30), ..View::default() });
+    let mut window = fake.window(on(Screen::Collect));
+    let job = JobView {
+        id: JobId(7),
+        title: "Solve 19 pairs".to_owned(),
+        state: JobState::Running {
+            fraction: 0.1,
+            doing: "starting".to_owned(),
+            remaining: None,
+            cancelling: false,
+        },
+        elapsed: std::time::Duration::from_secs(1),
+        by_itself: false,
+    };
+    fake.show(View { source: folder_of(30), jobs: Arc::from([job]), ..View::default() });
+    window.run_steps(1);
+    let enabled =
+        |window: &Harness<'_, PlumblineWindow>| !window.get_by_label("Cancel").accesskit_node().is_disabled();
+    assert!(!enabled(&window), "it stands where the button stood");
+    window.run_steps(3);
+    assert!(enabled(&window));
+    click(&mut window, "Cancel");
+    assert_eq!(fake.take_sent(), [Command::from(JobCommand::Cancel(JobId(7)))]);
 }
 
 #[test]

@@ -100,6 +100,7 @@ fn good_before(minutes: i64, eyes_on_min: Option<f64>, moved_m: Option<[f64; 3]>
         judged: Some(health),
         when: Some(JudgedWhen { at, eyes_on_min, moved_m }),
         colder_wait_min: None,
+        does_not_hold: None,
     })
 }
 
@@ -135,7 +136,13 @@ fn what_was_judged_steps_back_once_places_have_moved_or_it_is_old() {
 fn cold_eyes_are_told_to_wait_instead_of_being_calibrated_again() {
     let HealthState::Judged(health) = judged(0.04, None) else { unreachable!("just made") };
     let state = HealthState::Judged(health.clone());
-    let health = HealthView { state, judged: Some(health), when: None, colder_wait_min: Some(11.0) };
+    let health = HealthView {
+        state,
+        judged: Some(health),
+        when: None,
+        colder_wait_min: Some(11.0),
+        does_not_hold: None,
+    };
     let fake = Fake::over(with_health(health));
     let window = fake.window(on(Screen::Drift));
     assert!(says(&window, "Wait 11 min, then ask again.") && says(&window, "off by 1.0 cm near"));
@@ -215,7 +222,13 @@ fn a_proposal_that_was_judged_before_places_moved_is_to_be_judged_again() {
     let state = HealthState::Judged(health.clone());
     let at = jiff::Timestamp::now();
     let when = Some(JudgedWhen { at, eyes_on_min: None, moved_m: Some([0.01, 0.02, 0.04]) });
-    let view = with_health(HealthView { state, judged: Some(health), when, colder_wait_min: None });
+    let view = with_health(HealthView {
+        state,
+        judged: Some(health),
+        when,
+        colder_wait_min: None,
+        does_not_hold: None,
+    });
     let fake = Fake::over(view);
     let mut window = fake.window(on(Screen::Judge));
     assert!(says(&window, "Places have moved by 40.0 mm since it was judged"));

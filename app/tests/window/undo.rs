@@ -49,6 +49,9 @@ fn one_button_and_one_key_take_back_what_was_put_in_use_on_each_screen() {
         window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
         window.run_steps(3);
         assert_eq!(fake.take_sent(), commands, "{screen:?} by the key");
+        window.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+        window.run_steps(3);
+        assert!(!fake.take_sent().iter().any(|sent| commands.contains(sent)), "{screen:?}: redo is no undo");
     }
 }
 

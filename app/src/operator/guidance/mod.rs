@@ -23,7 +23,7 @@ pub use touch::{
 };
 
 use plumbline_engine::View;
-use plumbline_engine::view::{CaptureHint, Connection, EyesView, Proposal, SourceStatus, StepState};
+use plumbline_engine::view::{CaptureHint, Connection, EyesView, Proposal, SourceStatus};
 use plumbline_widgets::format;
 
 use super::{Action, CommissionAction, RobotAction, Screen, faults};
@@ -108,7 +108,7 @@ fn source_trouble(view: &View) -> Option<Guidance> {
 
 /// Where the calibration of the eyes in use does not hold: why, and what to do.
 fn eyes_off(view: &View) -> Option<Guidance> {
-    let StepState::Stale { why } = &view.eyes.step else { return None };
+    let why = view.eyes.health.does_not_hold.as_ref()?;
     Some(say(why.clone()).warn().then("Calibrate the eyes again", Action::Go(Screen::Collect)))
 }
 
@@ -198,7 +198,7 @@ fn collect(view: &View) -> Guidance {
     let toured = twin.running && (twin.board.is_none() || twin.board_places_left > 0);
     let enough = count >= ENOUGH_PAIRS && (eyes.ghost.is_none() || toured);
     if eyes.is_solved_in_use
-        && let StepState::Stale { why } = &eyes.step
+        && let Some(why) = &eyes.health.does_not_hold
     {
         // What was taken before tells how the eyes were then.
         return say(format!("{why} Delete these pairs and take new ones."))

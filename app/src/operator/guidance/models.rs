@@ -4,6 +4,7 @@ use plumbline_engine::view::{Figure, StepState, Subject};
 use plumbline_engine::{Correction, View};
 use plumbline_widgets::format;
 
+use super::onward::to_grasping;
 use super::sentence::{Guidance, say};
 use super::standing::{Standing, no_better, standing};
 use crate::operator::actions::too_few;
@@ -15,6 +16,7 @@ pub(super) fn models(view: &View) -> Guidance {
     match standing(models) {
         Standing::NothingTouched => say("Models learn from touches. Touch the screen first (step 3).")
             .then("Go to Touch", Action::Go(Screen::Touch)),
+        Standing::NotChosen if models.session.is_some() => say(next_or(view, "The touches are being read.")),
         Standing::NotChosen => say(next_or(view, "Choose the session of touches to learn from."))
             .then("Go to Touch", Action::Go(Screen::Touch)),
         Standing::Unusable(why) => say(why).warn().then("Go to Touch", Action::Go(Screen::Touch)),
@@ -34,9 +36,13 @@ pub(super) fn models(view: &View) -> Guidance {
 
 fn proposed(view: &View, method: Method, error_m: Option<f64>) -> Guidance {
     let name = method.name();
-    if let Some((error_m, without_m)) = error_m.zip(no_better(&view.models, method)) {
+    if let Some((error_m, (without_m, is_worse))) = error_m.zip(no_better(&view.models, method)) {
+        let why = match is_worse {
+            true => "it makes things worse. Look for a named cause.",
+            false => "these touches do not tell that it helps. More of them may, or a named cause.",
+        };
         let said = format!(
-            "{name} misses by {} on touches that it had not seen, and without a model it is {}: these touches do not tell that it helps. More of them may, or a named cause.",
+            "{name} misses by {} on touches that it had not seen, and without a model it is {}: {why}",
             format::mm(error_m),
             format::mm(without_m)
         );
@@ -65,11 +71,12 @@ fn in_use(view: &View, method: Method) -> Guidance {
             _ => guidance.then("Go to Touch", Action::Go(Screen::Touch)),
         };
     }
-    if let Some(checked) = checked(view, method) {
+    let waits = view.touch.correct_with == Some(Correction::Effects);
+    if let Some(checked) = checked(view, method).filter(|_| !waits) {
         return checked;
     }
     // A model that is in use waits while targets go by something else.
-    let said = if view.touch.correct_with == Some(Correction::Effects) {
+    let said = if waits {
         format!(
             "{name} is in use, but targets are corrected by the named effects now (Touch, Targets corrected by). Checking {name} goes by {name}. Nothing moves yet."
         )
@@ -96,7 +103,7 @@ fn checked(view: &View, method: Method) -> Option<Guidance> {
         "{name} is in use and was checked: the finger lands {} beside new targets{before}.",
         format::mm(after_m)
     );
-    Some(say(format!("{said} Next: grasp.")).then("Go to Grasp", Action::Go(Screen::Grasp)))
+    Some(to_grasping(view, &said))
 }
 
 /// The engine's own sentence, where it has one.

@@ -24,3 +24,15 @@ pub(super) fn after_the_mount(view: &View, said: &str) -> Option<Guidance> {
         say(format!("{said} Next: touch the screen (step 3).")).then("Go to Touch", Action::Go(Screen::Touch))
     })
 }
+
+/// To grasping, where the eyes that lead there are still good.
+pub(super) fn to_grasping(view: &View, said: &str) -> Guidance {
+    match &view.eyes.health.does_not_hold {
+        Some(_) => say(format!(
+            "{said} Before grasping: the eyes see places elsewhere by now, calibrate them again."
+        ))
+        .warn()
+        .then("Calibrate the eyes again", Action::Go(Screen::Collect)),
+        None => say(format!("{said} Next: grasp.")).then("Go to Grasp", Action::Go(Screen::Grasp)),
+    }
+}

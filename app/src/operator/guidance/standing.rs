@@ -74,10 +74,28 @@ fn best_proposal(models: &ModelsView) -> Option<Standing> {
     Some(Standing::Proposed(chosen.method(), error_m(chosen)))
 }
 
-/// The mean error without a model, where what the model leaves on touches that it had not seen may as well be as large,
-/// m.
-pub fn no_better(models: &ModelsView, method: Method) -> Option<f64> {
-    let without_m = models.map.as_ref()?.without_m?;
-    let [_, high_m] = models.comparison.as_ref()?.of(method)?.mean_2d_interval_m;
-    (high_m >= without_m).then_some(without_m)
+/// How far targets are missed without a model, m, where what a proposal leaves on touches that it had not seen may as
+/// well be as large; and whether it is larger for certain.
+pub fn no_better(models: &ModelsView, method: Method) -> Option<(f64, bool)> {
+    let model = models.proposals.iter().find(|model| model.method() == method)?;
+    let without_m = model.provenance().without?.mean_2d_m;
+    let held_out = model.provenance().cross_validation.as_ref()?;
+    Some((without_m, is_no_better(without_m, held_out.mean_2d_interval_m)?))
+}
+
+/// `None`: it is better; else whether it is worse for certain.
+fn is_no_better(without_m: f64, [low_m, high_m]: [f64; 2]) -> Option<bool> {
+    (high_m >= without_m).then_some(low_m > without_m)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_model_is_better_where_its_whole_interval_is() {
+        assert_eq!(is_no_better(7.6e-3, [0.9e-3, 3.8e-3]), None);
+        assert_eq!(is_no_better(7.6e-3, [5.1e-3, 9.9e-3]), Some(false));
+        assert_eq!(is_no_better(2.0e-3, [4.5e-3, 5.5e-3]), Some(true));
+    }
 }

@@ -8,6 +8,7 @@ use plumbline_model::touch_plan::{Finger, Purpose};
 use plumbline_model::touchscreen::ScreenPlacement;
 use plumbline_widgets::format;
 
+use super::onward::to_grasping;
 use super::robot;
 use super::sentence::{Guidance, say};
 use crate::operator::snapshot::models::FEWEST_FOR_A_NETWORK;
@@ -235,7 +236,7 @@ fn checked(view: &View, touched: &str) -> Guidance {
         let better = better.map_or_else(String::new, |better| format!(" {better}"));
         let said = format!("{} {} It stands on the timeline.{better}", proof.headline(), proof.figures());
         return match proof.worth() {
-            Worth::Help => say(format!("{said} Next: grasp.")).then("Go to Grasp", Action::Go(Screen::Grasp)),
+            Worth::Help => to_grasping(view, &said),
             Worth::Untold => say(said).then("Go to Gap", Action::Go(Screen::Gap)),
             Worth::Harm => say(said).warn().then("Go to Gap", Action::Go(Screen::Gap)),
         };
@@ -243,8 +244,7 @@ fn checked(view: &View, touched: &str) -> Guidance {
     let beside = beside_held_out(view, figures.mean_m).unwrap_or_default();
     let said = format!("{touched} checked: {}{beside}", lands(view, &figures));
     if touch.correct_with.is_some() {
-        return say(format!("{said} It stands on the timeline. Next: grasp."))
-            .then("Go to Grasp", Action::Go(Screen::Grasp));
+        return to_grasping(view, &format!("{said} It stands on the timeline."));
     }
     say(format!("{said} Nothing corrected these targets.")).then("Plan new targets", again)
 }

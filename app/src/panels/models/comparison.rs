@@ -167,8 +167,8 @@ fn figures(ui: &mut Ui, facts: &Facts) {
     });
 }
 
-/// One button per proposal, the best first. The one of what is in use stays in its place and does nothing: no
-/// other button takes the place of one that was just pressed.
+/// One button per proposal, the best first. Those of what is in use and of what was replaced stay in their places and do
+/// nothing: no other button takes the place of one that was just pressed.
 fn decide(ui: &mut Ui, cx: &mut PanelContext<'_>, facts: &Facts) {
     let models = &cx.view.models;
     if models.proposals.is_empty() {
@@ -178,13 +178,19 @@ fn decide(ui: &mut Ui, cx: &mut PanelContext<'_>, facts: &Facts) {
         let best = facts.simplest().or(facts.best.map(|best| facts.judged[best].method));
         let proposed = |method: Method| models.proposals.iter().find(|model| model.method() == method);
         let in_use = models.in_use.as_ref().map(|model| model.method());
-        let offered = |method: &Method| proposed(*method).is_some() || in_use == Some(*method);
+        let judged = |method: Method| facts.judged.iter().any(|judged| judged.method == method);
+        let offered =
+            |method: &Method| proposed(*method).is_some() || in_use == Some(*method) || judged(*method);
         let mut methods: Vec<Method> = Method::ALL.into_iter().filter(offered).collect();
         methods.sort_by_key(|method| (Some(*method) != best, std::cmp::Reverse(*method)));
         for method in methods {
             let button = egui::Button::new(format!("Use {}", method.name()));
             let Some(model) = proposed(method) else {
-                ui.add_enabled(false, button).on_disabled_hover_text("It is in use");
+                let why = match in_use == Some(method) {
+                    true => "It is in use",
+                    false => "Another one took its place: Undo brings it back",
+                };
+                ui.add_enabled(false, button).on_disabled_hover_text(why);
                 continue;
             };
             if ui.add(button).on_hover_text(provenance(model)).clicked() {

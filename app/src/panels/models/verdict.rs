@@ -97,9 +97,12 @@ impl Facts {
             .map_or_else(String::new, |m| format!(", against {} without a model", format::mm(m)));
         let mean = format::mm(best.errors.mean_2d_m);
         if let Some(without_m) = self.without_m.filter(|without_m| best.interval_m[1] >= *without_m) {
+            let so = match best.interval_m[0] > without_m {
+                true => "which is less",
+                false => "which cannot be told apart from that",
+            };
             return Some(format!(
-                "{} misses by {mean} on touches that it had not seen; without a model it is {}, which cannot be told \
-                 apart from that.",
+                "{} misses by {mean} on touches that it had not seen; without a model it is {}, {so}.",
                 best.method.name(),
                 format::mm(without_m)
             ));

@@ -3,6 +3,7 @@
 use super::around::{CommissionAround, Made};
 use super::kept::{Kept, KeptRun, Learned};
 use super::view::{CommissionDone, CommissionFigure, CommissionState, CommissionStep, CommissionStepView};
+use crate::ground::Time;
 use crate::touch::RunStanding;
 
 /// Fewer touches tell too little of what makes the arm miss.
@@ -61,7 +62,12 @@ fn effects(around: &CommissionAround, kept: Option<&Kept>) -> Made {
         let found = around.found.as_ref().filter(|found| !found.is_open)?;
         return counts(&Some(found.done.clone()), kept);
     };
-    let learned = kept?.learned.as_ref().filter(|learned| learned.session == touched.session)?;
+    let learned = kept?.learned.as_ref().filter(|learned| learned.session == touched.session);
+    let Some(learned) = learned else {
+        // An earlier version did not keep it.
+        let found = around.found.as_ref().filter(|found| !found.is_open)?;
+        return found.sessions.contains(&touched.session).then(|| found.done.clone());
+    };
     let is_in_use = learned.effects.iter().all(|name| around.effects.names.contains(name));
     let figure = match learned.is_not_in_library {
         true => CommissionFigure::NotInLibrary,
@@ -72,7 +78,7 @@ fn effects(around: &CommissionAround, kept: Option<&Kept>) -> Made {
 
 /// Keeps what a search made of the touches once it leaves nothing open; one that changed nothing in the model
 /// says nothing new.
-pub fn take_effects(kept: &mut Kept, around: &CommissionAround) {
+pub fn take_effects(kept: &mut Kept, around: &CommissionAround, time: Time) {
     let Some(touched) = &kept.touched else { return };
     let Some(found) = around.found.as_ref().filter(|found| !found.is_open) else { return };
     let known = kept.learned.as_ref().filter(|learned| learned.session == touched.session);
@@ -84,7 +90,8 @@ pub fn take_effects(kept: &mut Kept, around: &CommissionAround) {
         session: touched.session.clone(),
         effects: around.effects.names.clone(),
         is_not_in_library: found.done.figure == CommissionFigure::NotInLibrary,
-        at: found.done.at,
+        // What changed later was changed now, whenever it was found.
+        at: if known.is_some() { Some(time.day) } else { found.done.at },
     });
 }
 

@@ -244,6 +244,29 @@ fn what_is_looked_for_later_takes_nothing_back_but_what_changes_in_the_model_doe
     let mut lab = lab.again(Duration::from_secs(60));
     lab.around.found = None;
     assert_eq!(lab.after_s(1).now(), Some(CommissionStep::Check), "the same after a restart");
+
+    // Also once all was done, and however long ago it was found.
+    lab.around.run = Some(lab.run("another check", Purpose::Check, 20, true));
+    lab.after_s(1);
+    lab.around.held = Some(lab.made(CommissionFigure::Held("Tomato".to_owned())));
+    assert!(lab.after_s(5).is_done());
+    lab.around.found = Some(Found { is_open: false, ..lab.found("check", false) });
+    lab.time = lab.time.after(Duration::from_secs(60));
+    lab.around.effects.names.push("stick@elbow".to_owned());
+    assert_eq!(lab.after_s(1).now(), Some(CommissionStep::Check), "added long after it was found");
+}
+
+#[test]
+fn a_file_of_an_earlier_version_goes_by_the_finding_that_is_shown() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let text = r#"{"format":1,"began":"2026-05-01T10:00:00Z","is_anew":false,"is_on":false,"spent_s":3.0,"touches":24,"views":0,"counted":{},"touched":{"session":"touches","touched":24,"mean_m":0.005,"at":"2026-05-01T10:20:00Z"},"checked":null}"#;
+    std::fs::write(folder.path().join(FILE), text).expect("written");
+    let mut lab = Lab::on(folder, Time::now());
+    lab.calibrated();
+    lab.around.hands = Some(lab.made(SEEN));
+    assert_eq!(lab.view().now(), Some(CommissionStep::Effects));
+    lab.around.found = Some(lab.found("touches", false));
+    assert_eq!(lab.view().now(), Some(CommissionStep::Check));
 }
 
 #[test]

@@ -40,6 +40,9 @@ pub struct CommissionWorkflow {
 impl CommissionWorkflow {
     /// Something may have changed around: what was spent is counted, and what was finished is kept.
     pub fn look(&mut self, around: &CommissionAround, context: &mut Context<'_>) {
+        if let Some(kept) = self.kept.as_mut().filter(|kept| kept.is_on) {
+            take_effects(kept, around, context.time);
+        }
         let counts = self.is_counting(around);
         let views_seen = self.views_seen.replace(around.views).unwrap_or(around.views);
         let counted_to = std::mem::replace(&mut self.counted_to, counts.then_some(context.time.instant));
@@ -53,7 +56,7 @@ impl CommissionWorkflow {
         if let Some(run) = &around.run {
             take_run(kept, run, context.time);
         }
-        take_effects(kept, around);
+        take_effects(kept, around, context.time);
         self.keep(context);
     }
 

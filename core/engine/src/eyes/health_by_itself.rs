@@ -39,8 +39,10 @@ pub(super) struct ByItself {
     looked_at: Option<(Of, Option<Timestamp>)>,
     /// Which calibration looked bad, and how often in a row.
     bad: Option<(Arc<StereoCalibration>, u32)>,
-    /// Which one was said to be bad, and in which words.
-    told: Option<(Arc<StereoCalibration>, String)>,
+    /// Which one was said to be bad.
+    told: Option<Arc<StereoCalibration>>,
+    /// Which one has looked bad more than once, and how bad last, in words.
+    off: Option<(Arc<StereoCalibration>, String)>,
 }
 
 impl EyesWorkflow {
@@ -85,6 +87,10 @@ impl EyesWorkflow {
         // Cold eyes do not see as they did when they were calibrated warm, and will again.
         let is_cold = self.to_be_warm_min(around, now).is_some();
         let is_needed = is_proposed || !(around.is_watched || around.is_corrected || is_cold);
+        if around.is_watched || around.is_corrected || !is_live(&around.source) {
+            // What was seen before says nothing of what is corrected since, and watching says it itself.
+            self.health.by_itself.off = None;
+        }
         if !sees_now || around.arm_moves || !is_needed {
             return self.put_off(now);
         }
@@ -129,9 +135,9 @@ impl EyesWorkflow {
         by_itself.due = Some(now + PERIOD.max(busy.div_f64(MOST_SHARE)));
     }
 
-    /// Why the calibration in use does not hold any more, as it was said; `None`: nobody has seen that.
+    /// Why the calibration in use does not hold any more; `None`: nobody has seen that, or it is told otherwise now.
     pub fn does_not_hold(&self) -> Option<&str> {
-        let (of, said) = self.health.by_itself.told.as_ref()?;
+        let (of, said) = self.health.by_itself.off.as_ref()?;
         self.in_use().is_some_and(|in_use| Arc::ptr_eq(of, in_use)).then_some(said.as_str())
     }
 
@@ -149,9 +155,9 @@ impl EyesWorkflow {
         }
         let is_cold = self.to_be_warm_min(around, context.time.instant).is_some();
         let by_itself = &mut self.health.by_itself;
-        let is_told = by_itself.told.as_ref().is_some_and(|(told, _)| Arc::ptr_eq(told, &of.in_use));
+        let is_told = by_itself.told.as_ref().is_some_and(|told| Arc::ptr_eq(told, &of.in_use));
         if health.in_use.is_good {
-            by_itself.bad = None;
+            (by_itself.bad, by_itself.off) = (None, None);
             if is_told {
                 by_itself.told = None;
                 context.notices.add(NoticeLevel::Info, "The calibration of the eyes holds again.");
@@ -166,13 +172,15 @@ impl EyesWorkflow {
         let before = by_itself.bad.take().filter(|(bad, _)| Arc::ptr_eq(bad, &of.in_use));
         let times = before.map_or(0, |(_, times)| times) + 1;
         by_itself.bad = Some((of.in_use.clone(), times));
+        if times >= BAD_IN_A_ROW {
+            by_itself.off = Some((of.in_use.clone(), does_not_hold(health)));
+        }
         if !ask.by_itself {
             // Who asked reads it where he has asked.
-            by_itself.told = Some((of.in_use.clone(), does_not_hold(health)));
+            by_itself.told = Some(of.in_use.clone());
         } else if times >= BAD_IN_A_ROW && !is_told {
-            let said = does_not_hold(health);
-            by_itself.told = Some((of.in_use.clone(), said.clone()));
-            context.notices.add(NoticeLevel::Warning, said);
+            by_itself.told = Some(of.in_use.clone());
+            context.notices.add(NoticeLevel::Warning, does_not_hold(health));
             return true;
         }
         false

@@ -31,7 +31,9 @@ impl EyesWorkflow {
         };
         let colder_wait_min = self.to_be_warm_min(around, instant);
         let when = judged.map(|judged| judged.when(around));
-        HealthView { state, judged: judged.map(|judged| judged.health.clone()), when, colder_wait_min }
+        let does_not_hold = self.does_not_hold().map(str::to_owned);
+        let judged = judged.map(|judged| judged.health.clone());
+        HealthView { state, judged, when, colder_wait_min, does_not_hold }
     }
 
     /// In how many minutes the eyes are as warm as when the calibration in use was made; `None`: they are, or nobody knows.

@@ -93,7 +93,11 @@ impl GapWorkflow {
         match (self.shown_named(), self.stale()) {
             (None, _) => StepState::NotDone,
             (Some(_), Some(why)) => StepState::Stale { why },
-            (Some(_), None) => StepState::Done,
+            // What was found and is not in the model is work that is left.
+            (Some(_), None) => match self.found() {
+                Some((_, true)) => StepState::NotDone,
+                _ => StepState::Done,
+            },
         }
     }
 }

@@ -31,10 +31,12 @@ impl GapWorkflow {
         named.map(|effect| effect.title.clone()).collect()
     }
 
-    /// Their names.
+    /// Their names, in the order of the alphabet.
     pub fn names_in_use(&self) -> Vec<String> {
         let named = self.seen.model.effects.iter().filter(|effect| effect.is_named);
-        named.map(|effect| effect.name.clone()).collect()
+        let mut names: Vec<String> = named.map(|effect| effect.name.clone()).collect();
+        names.sort();
+        names
     }
 
     /// The same for who reads them one by one: of each small one, how far it moves things.

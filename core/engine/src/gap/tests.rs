@@ -133,7 +133,11 @@ fn a_check_is_compared_beside_the_touches_that_were_learned_from() {
 fn what_was_found_is_there_after_a_restart_and_is_added_and_taken_back() {
     let mut lab = Lab::new().with_finding();
     let view = lab.view();
-    assert_eq!((view.findings.len(), view.step.clone()), (1, StepState::Done));
+    assert_eq!(
+        (view.findings.len(), view.step.clone()),
+        (1, StepState::NotDone),
+        "what was found is not added"
+    );
     assert_eq!(view.addable(), [0, 1]);
     let view = lab.tell(GapCommand::Add { effects: vec![0] });
     assert_eq!(view.model.name, "nominal + 1 effect", "{}", lab.last_notice());
@@ -182,7 +186,7 @@ fn a_lab_that_was_moved_or_copied_finds_its_own_sessions() {
     let session = Lab::session_in(copied.path());
     let mut there = Lab::on(copied);
     let shown = there.view().shown.clone().expect("it was found");
-    assert_eq!((shown.folders.clone(), there.view().step.clone()), (vec![session.clone()], StepState::Done));
+    assert_eq!((shown.folders.clone(), there.view().stale.clone()), (vec![session.clone()], None));
     // The first lab may be gone.
     drop(lab);
     let copied = there.folder;
@@ -198,7 +202,7 @@ fn a_copied_lab_keeps_to_its_own_session_when_measuring_goes_on_in_the_first_one
     let mut there = Lab::on(copied);
     let view = there.view();
     assert_eq!(view.shown.clone().expect("it was found").folders, [session]);
-    assert_eq!(view.step, StepState::Done, "what was compared is here as it was");
+    assert_eq!(view.stale, None, "what was compared is here as it was");
 }
 
 /// One digit of a table is another one: it is as long as it was.

@@ -101,7 +101,10 @@ impl ModelsWorkflow {
         match &self.data {
             _ if self.in_use.is_some() => self.next_with_model(around),
             None if self.session.is_some() => "The touches are being read.".to_owned(),
-            None => "Touch the screen first, step 3, or choose a session with touches.".to_owned(),
+            None => format!(
+                "Touch the screen first, step 3, or choose a session with touches. M2 and M3 need {} of them, M1 fewer.",
+                super::FEWEST_FOR_A_NETWORK
+            ),
             Some(Err(reason)) => reason.to_string(),
             Some(Ok(data)) => {
                 format!("Train models on the {} of this session.", counted(data.len(), "touch"))

@@ -234,13 +234,13 @@ impl ModelsWorkflow {
         }
     }
 
-    /// What goes out of use can be used again, unless another one of its kind takes its place.
-    fn offer_again(&mut self, history: &History, by: Option<Method>) {
+    /// What is taken out of use, and not replaced, can be used again.
+    fn offer_again(&mut self, history: &History, none: bool) {
         let Some(before) = &self.history else { return };
         let is_undone = history.entries.len() < before.entries.len();
         let (Some(kept), Some(in_use)) = (before.in_use(), &self.in_use) else { return };
         let method = in_use.model.method();
-        if (is_undone || by != Some(method)) && !self.proposals.contains_key(&method) {
+        if (is_undone || none) && !self.proposals.contains_key(&method) {
             let map = Arc::new(ModelMap { proposed: true, ..(*in_use.map).clone() });
             let proposal = Proposal { model: in_use.model.clone(), map, screen_m: kept.screen_m };
             self.proposals.insert(method, proposal);
@@ -253,13 +253,17 @@ impl ModelsWorkflow {
         model: Option<Arc<CorrectionModel>>,
         map: Option<Arc<ModelMap>>,
     ) {
-        self.offer_again(&history, model.as_ref().map(|model| model.method()));
+        self.offer_again(&history, model.is_none());
         self.history = Some(history);
         let accepted = model.as_ref().and_then(|model| {
             let proposed = self.proposals.get(&model.method())?;
             Arc::ptr_eq(&proposed.model, model).then(|| model.method())
         });
         let proposal = accepted.and_then(|method| self.proposals.remove(&method));
+        // One that was offered again is no proposal beside itself, read anew from its file.
+        if let Some(model) = &model {
+            self.proposals.retain(|_, offered| offered.model.provenance() != model.provenance());
+        }
         let own = proposal.map(|proposal| {
             let mut map = (*proposal.map).clone();
             map.proposed = false;

@@ -165,8 +165,7 @@ impl ArmDriver {
         self.chains.check(&self.limiter.rig, &joints, &state.unknown, &state.late)?;
         let sent = state.commanded.as_ref().ok_or_else(unknown)?;
         let present = state.measured.as_ref().ok_or_else(unknown)?;
-        let at_rest = if matches!(state.motion, Motion::Holding(_)) { joints.as_slice() } else { &[] };
-        let start = self.limiter.set_out(sent, present, &joints, at_rest);
+        let start = self.limiter.set_out(sent, present, &joints, &state.at_rest);
         let line = self.limiter.plan(&start, present, wanted)?;
         // The limiter bounds it.
         Ok(duration::seconds(line.duration_s).unwrap_or_default())

@@ -77,10 +77,12 @@ impl Controller {
             return Err(bad(format!("fingers that close at {} rad/s; give less", grip.speed_rad_s)));
         }
         let joints: Vec<JointIndex> = grip.fingers.iter().map(|finger| finger.joint).collect();
-        let (commanded, _) = self.may_move(&joints)?;
+        // Fingers that press already go on from there.
+        let (commanded, _) = self.may_move(&joints, &[])?;
         for finger in &grip.fingers {
             self.limiter.goal(finger.joint, finger.goal_rad, &commanded)?;
         }
+        self.commanded = Some(commanded.clone());
         let moving = self.moving();
         // What made the arm hold before is over; what moves without these fingers goes on.
         if moving.is_empty() || moving.iter().any(|joint| joints.contains(joint)) {

@@ -189,9 +189,10 @@ impl Limiter {
         Ok(())
     }
 
-    /// Where joints set out from that were sent there: one that hangs farther from its goal than one step, from where
-    /// it is. So do all those at rest where they were sent on into something: a finger that was lowered onto the glass
-    /// presses on it, and each way that set out from its goals would begin in there.
+    /// From where joints set out that were sent somewhere: one that hangs farther from its goal than one step, from
+    /// where it is. So do those at rest where they were sent on into something: a finger that was lowered onto the
+    /// glass presses on it, and each way that set out from its goals would begin in there. Others that rest do so only
+    /// where these are not enough.
     pub fn set_out(
         &self,
         sent: &Posture,
@@ -206,8 +207,11 @@ impl Limiter {
                 start[*joint] = present[*joint];
             }
         }
-        if self.guarded(present, &present.with(at_rest, &start.of(at_rest))).is_err() {
-            for joint in at_rest {
+        for only_these in [true, false] {
+            if at_rest.is_empty() || self.guarded(present, &start).is_ok() {
+                break;
+            }
+            for joint in at_rest.iter().filter(|joint| !only_these || joints.contains(joint)) {
                 start[*joint] = present[*joint];
             }
         }

@@ -107,6 +107,8 @@ pub struct JointState {
     pub late: Arc<[JointIndex]>,
     /// All joints as commanded last, the others as measured.
     pub commanded: Option<Posture>,
+    /// Joints that stand and set out from where they are where their goals lie in something.
+    pub at_rest: Arc<[JointIndex]>,
     /// The bus.
     pub bus: BusStatistics,
     /// The newest ends of moves, oldest first.
@@ -136,6 +138,7 @@ impl JointState {
             unknown: Arc::from([]),
             late: Arc::from([]),
             commanded: None,
+            at_rest: Arc::from([]),
             bus: BusStatistics::default(),
             outcomes: Arc::from([]),
             refusal: None,

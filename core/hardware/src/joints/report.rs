@@ -68,6 +68,7 @@ impl Controller {
             late: self.late().into(),
             slow_answers: slow.map(|(count, _)| count).unwrap_or(0),
             commanded: self.commanded.clone(),
+            at_rest: self.at_rest().into(),
             bus: BusStatistics {
                 cycles: self.seq,
                 complete_cycles: self.complete,

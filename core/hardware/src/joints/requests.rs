@@ -11,7 +11,7 @@ use super::controller::{Controller, Mode};
 use super::driver::expected_servos;
 use super::grip::Grip;
 use super::refusal::{HoldReason, Refusal, Unheard};
-use super::slot::{Bar, Identity, Slot};
+use super::slot::{Bar, Force, Identity, Slot};
 use super::torque::{barred, unknown};
 use super::trajectory::Trajectory;
 use crate::dynamixel::{BusError, BusScan, ScanRange};
@@ -56,6 +56,7 @@ impl Controller {
             }
             Request::Move(id, wanted) => match self.begin_move(&wanted) {
                 Ok(line) => {
+                    self.commanded = Some(line.start.clone());
                     self.stay(MoveOutcome::Replaced, HoldReason::Asked);
                     self.end_grip(&line.joints);
                     self.mode = Mode::Move { id, line, fraction: 0.0, arrived_at: None };
@@ -109,14 +110,17 @@ impl Controller {
 
     fn begin_move(&mut self, wanted: &Move) -> Result<Trajectory, Refusal> {
         let joints: Vec<JointIndex> = wanted.goals.iter().map(|(joint, _)| *joint).collect();
-        let (commanded, measured) = self.may_move(&joints)?;
-        self.limiter.plan(&commanded, &measured, wanted)
+        let (start, measured) = self.may_move(&joints, &self.at_rest())?;
+        self.limiter.plan(&start, &measured, wanted)
     }
 
-    /// Whether these joints may move at all; where they are commanded to be, and where they are. A
-    /// joint that hangs farther from its goal than one step sets out from where it is, and so do all
-    /// of them that stand before something that they were sent into.
-    pub(super) fn may_move(&mut self, joints: &[JointIndex]) -> Result<(Posture, Posture), Refusal> {
+    /// Whether these joints may move at all; from where they set out, and where they are. `at_rest`: those that may
+    /// set out from where they are.
+    pub(super) fn may_move(
+        &self,
+        joints: &[JointIndex],
+        at_rest: &[JointIndex],
+    ) -> Result<(Posture, Posture), Refusal> {
         if self.options.stop.is_pressed() {
             return Err(Refusal::Stopped);
         }
@@ -141,14 +145,26 @@ impl Controller {
         };
         let measured = self.measured().ok_or_else(not_known)?;
         let sent = self.commanded.clone().ok_or_else(not_known)?;
-        // A grip presses on purpose.
-        let grips = |joint: &&JointIndex| self.grips.iter().any(|grip| grip.joint == **joint);
-        let stands = matches!(self.mode, Mode::Hold(_));
-        let at_rest: Vec<JointIndex> =
-            joints.iter().filter(|joint| stands && !grips(joint)).copied().collect();
-        let commanded = self.limiter.set_out(&sent, &measured, joints, &at_rest);
-        self.commanded = Some(commanded.clone());
-        Ok((commanded, measured))
+        let start = self.limiter.set_out(&sent, &measured, joints, at_rest);
+        Ok((start, measured))
+    }
+
+    /// Joints that stand and may set out from where they are: those that hold, and do not press on purpose.
+    pub(super) fn at_rest(&self) -> Vec<JointIndex> {
+        let grips = |joint: JointIndex| self.grips.iter().any(|grip| grip.joint == joint);
+        let rests = |slot: &&Slot| {
+            slot.holds_torque()
+                && slot.is_known()
+                && slot.silence() < RECENT
+                && !matches!(slot.force, Some(Force::Limited(_)))
+                && !grips(slot.reading.joint)
+        };
+        match &self.mode {
+            Mode::Hold(_) => {
+                self.exchange.slots.iter().filter(rests).map(|slot| slot.reading.joint).collect()
+            }
+            _ => vec![],
+        }
     }
 
     /// Follows the newest goals, where they are new and may be followed.
@@ -165,9 +181,9 @@ impl Controller {
             return;
         }
         let joints: Vec<JointIndex> = setpoint.joints.iter().map(|(joint, _)| *joint).collect();
-        let checked = self.may_move(&joints).and_then(|(commanded, _)| {
+        let checked = self.may_move(&joints, &self.at_rest()).and_then(|(start, _)| {
             self.limiter.setpoint(&setpoint)?;
-            Ok(commanded)
+            Ok(start)
         });
         match checked {
             Err(refusal) => {
@@ -176,11 +192,12 @@ impl Controller {
                 }
                 self.refuse(refusal);
             }
-            Ok(commanded) => {
+            Ok(start) => {
                 let speeds_rad_s = match &self.mode {
                     Mode::Follow { speeds_rad_s, .. } => speeds_rad_s.clone(),
-                    _ => Posture::new(vec![0.0; commanded.len()]),
+                    _ => Posture::new(vec![0.0; start.len()]),
                 };
+                self.commanded = Some(start);
                 if matches!(self.mode, Mode::Move { .. }) {
                     self.stay(MoveOutcome::Replaced, HoldReason::Asked);
                 }
