@@ -12,7 +12,6 @@ use plumbline_engine::view::{
 use plumbline_engine::{Command, EyesCommand, JobCommand, JobId, SourceCommand, View};
 
 use crate::fake::{Fake, click, says, shows};
-use crate::made_up::everything;
 use crate::made_up_touch::{running, with_touch};
 
 fn on(screen: Screen) -> WindowSettings {
@@ -171,18 +170,6 @@ fn a_button_that_means_something_new_rests_for_half_a_second() {
     window.input_mut().events.extend([egui::Event::PointerMoved(pos), button(true), button(false)]);
     window.run_steps(1);
     assert_eq!(fake.take_sent().len(), 1);
-}
-
-#[test]
-fn a_calibration_of_the_eyes_that_does_not_hold_is_said_and_leads_to_a_new_one() {
-    let mut view = everything();
-    let why = "The calibration of the eyes does not hold any more: places are off by 3.2 cm far.".to_owned();
-    Arc::make_mut(&mut view.eyes).health.does_not_hold = Some(why);
-    let fake = Fake::over(view);
-    let mut window = fake.window(on(Screen::Live));
-    assert!(says(&window, "does not hold any more"));
-    click(&mut window, "Calibrate the eyes again");
-    assert!(shows(&window, "Coverage"), "where pairs are collected");
 }
 
 #[test]

@@ -71,6 +71,19 @@ fn with_health(health: HealthView) -> View {
 }
 
 #[test]
+fn a_calibration_that_does_not_hold_is_said_where_it_counts_and_leads_to_a_new_one() {
+    for screen in [Screen::Live, Screen::Drift] {
+        let why =
+            "The calibration of the eyes does not hold any more: places are off by 3.2 cm far.".to_owned();
+        let fake = Fake::over(with_health(HealthView { does_not_hold: Some(why), ..HealthView::default() }));
+        let mut window = fake.window(on(screen));
+        assert!(says(&window, "does not hold any more"), "{screen:?}");
+        click(&mut window, "Calibrate the eyes again");
+        assert!(shows(&window, "Coverage"), "where pairs are collected");
+    }
+}
+
+#[test]
 fn it_is_asked_for_beside_drift_and_answered_in_centimeters() {
     let fake = Fake::over(with(HealthState::NotAsked));
     let mut window = fake.window(on(Screen::Drift));
