@@ -120,7 +120,9 @@ fn chart(ui: &mut Ui, cx: &mut PanelContext<'_>, facts: &Facts) {
     if let Some(method) = clicked.and_then(|row| methods.get(row)) {
         cx.outbox.send(ModelsCommand::Show(*method));
     }
-    let words = "Mean distance in the plane at touches whose whole set was held out, with its 95 % interval.";
+    let words = "Mean distance in the plane at touches whose whole set was held out, with its 95 % interval. \
+                 All of it, also without a model, is counted from where the arm was sent at the contact; Touch counts \
+                 from the target.";
     ui.label(theme::small(ui, words));
     if !levels.is_empty() {
         ui.label(theme::small(ui, REPEATS_HELP));
