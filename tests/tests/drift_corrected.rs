@@ -89,7 +89,8 @@ type Errors = Vec<(Vector3<f64>, Matrix3<f64>)>;
 
 /// Where places stand is what the twin hides.
 fn errors(twin: &mut Lockstep, model: &RobotModel, above_m: f64) -> Errors {
-    let (seen, posture) = (SeenUnder { t_secs: Some(twin.eyes_on_s()), background_m: None }, twin.encoders());
+    let (seen, posture) =
+        (SeenUnder { t_secs: Some(twin.eyes_on_s()), ..SeenUnder::default() }, twin.encoders());
     let rig = model.rig().clone();
     let eyes = twin.truth_for_judging().eyes;
     let place = |k: usize| {

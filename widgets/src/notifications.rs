@@ -142,9 +142,9 @@ impl Notifications {
     }
 
     /// Messages on screen at a time, newest last. Of those that ask for nothing only the newest: a stack of them
-    /// would cover the work.
+    /// would cover the work, and older ones do not come back once it left or was dismissed.
     pub fn on_screen(&self, now: Instant) -> impl Iterator<Item = &Notification> {
-        let newest = self.kept.iter().rev().find(|n| n.is_on_screen(now) && n.asks_nothing());
+        let newest = self.kept.iter().rev().find(|n| n.asks_nothing());
         let newest = newest.map(|n| n.number);
         let shown = self.kept.iter().filter(|n| n.is_on_screen(now));
         let shown: Vec<_> = shown.filter(|n| !n.asks_nothing() || Some(n.number) == newest).collect();
@@ -340,6 +340,9 @@ mod tests {
             |of: &Notifications| of.on_screen(Instant::now()).map(|n| n.text.clone()).collect::<Vec<_>>();
         // The warning has scrolled out of what is kept.
         assert_eq!(on_screen(&notifications), ["pair 499"], "of those that ask for nothing only the newest");
+        let newest = notifications.history().next().expect("newest").number;
+        notifications.dismiss(newest);
+        assert!(on_screen(&notifications).is_empty(), "what was put away does not bring back older ones");
         (0..9).for_each(|i| notifications.push(Severity::Warning, format!("servo {i} is hot")));
         assert_eq!(on_screen(&notifications).len(), MOST_TOASTS);
     }

@@ -85,7 +85,7 @@ fn columns(ui: &mut Ui, proposed: Column<'_>, in_use: Column<'_>) {
     figure("Pairs", &|c| (!c.per_pair.is_empty()).then(|| c.per_pair.len().to_string()));
     figure("On unseen pairs", &summary(|s| s.cross_validated_px.map(format::px)));
     figure("Stereo rms", &summary(|s| Some(format::px(s.rms_stereo_px))));
-    figure("Epipolar", &summary(|s| Some(format::px(s.epipolar_px))));
+    figure("Vertical error", &summary(|s| Some(format::px(s.epipolar_px))));
     figure("Squares", &summary(|s| Some(format::mm_with(s.square_mean_m, s.square_sd_m))));
     figure("Baseline", &|c| Some(format::mm(c.cameras.baseline_m())));
     figure("Focal length left", &|c| Some(format::px(c.cameras.left.model.focal_px().0)));

@@ -53,7 +53,7 @@ fn figures(ui: &mut Ui, eyes: &EyesView, calibration: &StereoCalibration) {
             ui.spacing_mut().item_spacing.x = space::L;
             let unseen = summary.cross_validated_px.map_or(format::NONE.to_owned(), format::px);
             big_figure(ui, "on unseen pairs", &unseen, Role::Ink);
-            big_figure(ui, "epipolar", &format::px(summary.epipolar_px), Role::Ink);
+            big_figure(ui, "vertical error", &format::px(summary.epipolar_px), Role::Ink);
         });
         ui.add_space(space::S);
     }

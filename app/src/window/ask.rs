@@ -15,7 +15,7 @@ use super::about::About;
 use super::connect::{self, ConnectChoice};
 use super::dialogs::{Answer, Question};
 use super::lerobot::LerobotAsk;
-use super::sheet::{Asked, buttons, sheet, title};
+use super::sheet::{Asked, buttons, buttons_with_care, sheet, title};
 use super::unaccepted::{lost_by_closing, sheet_of_unaccepted};
 
 /// An open sheet.
@@ -205,7 +205,7 @@ fn delete_all(ui: &mut Ui, count: usize) -> Asked {
         &format!("Delete {}?", if count == 1 { "the pair".to_owned() } else { format!("all {count} pairs") }),
         "You can take it back with Undo.",
     );
-    match buttons(ui, "Delete all pairs", true) {
+    match buttons_with_care(ui, "Delete all pairs") {
         Some(true) => Asked::Command(EyesCommand::DeleteAll.into()),
         Some(false) => Asked::Closed,
         None => Asked::Open,
@@ -219,7 +219,7 @@ fn close_while_moving(ui: &mut Ui, view: &View) -> Asked {
         None => held.to_owned(),
     };
     title(ui, "Close while the robot moves?", &about);
-    match buttons(ui, "Stop and close", true) {
+    match buttons_with_care(ui, "Stop and close") {
         Some(true) => Asked::HoldAndClose,
         Some(false) => Asked::Closed,
         None => Asked::Open,
@@ -228,7 +228,7 @@ fn close_while_moving(ui: &mut Ui, view: &View) -> Asked {
 
 fn let_go(ui: &mut Ui) -> Asked {
     title(ui, "Let all joints go limp?", "Both arms sink by their own weight: hold them, and keep clear.");
-    match buttons(ui, "Let all go limp", true) {
+    match buttons_with_care(ui, "Let all go limp") {
         Some(true) => Asked::Command(RobotCommand::Torque { joints: Vec::new(), on: false }.into()),
         Some(false) => Asked::Closed,
         None => Asked::Open,

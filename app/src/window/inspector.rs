@@ -72,7 +72,7 @@ fn live(ui: &mut Ui, view: &View, state: &mut PanelState, outbox: &mut Outbox) {
     group_heading(ui, "Picture");
     let maps = [(Colormap::Viridis, "Viridis"), (Colormap::Spectrum, "Spectrum"), (Colormap::Gray, "Gray")];
     choice(ui, "Colors of depth", &mut state.live.colormap, &maps);
-    ui.checkbox(&mut state.live.epipolar_lines, "Epipolar lines");
+    ui.checkbox(&mut state.live.epipolar_lines, "Lines that both eyes share");
     if ui.button("Fit colors to what is seen").clicked() {
         state.live.depth_range_m = None;
     }
@@ -299,7 +299,7 @@ fn fit_rows(fit: &PairFit) -> [KeyValue; 5] {
     [
         KeyValue::optional("Left eye", Quantity::Pixels, fit.left_px),
         KeyValue::optional("Right eye", Quantity::Pixels, fit.right_px),
-        KeyValue::optional("Epipolar", Quantity::Pixels, fit.epipolar_px)
+        KeyValue::optional("Vertical error", Quantity::Pixels, fit.epipolar_px)
             .help("Distance of matched corners from each other's epipolar line"),
         KeyValue::quantity("Distance", Quantity::Depth, distance_m),
         KeyValue::text("Corners", fit.residuals.len().to_string()),

@@ -1,9 +1,9 @@
 //! A sheet that floats over the window. It has no backdrop: nothing may ever cover STOP.
 
-use egui::{Align2, Area, Context, Frame, Id, Margin, Order, Ui, Vec2};
+use egui::{Align2, Area, Button, Context, Frame, Id, Margin, Order, RichText, Ui, Vec2};
 use plumbline_engine::Command;
 use plumbline_widgets::buttons::accent_button;
-use plumbline_widgets::theme::{self, space};
+use plumbline_widgets::theme::{self, Role, space};
 
 use super::dialogs::Answer;
 
@@ -79,12 +79,25 @@ pub(super) fn close_button(ui: &mut Ui) -> bool {
 
 /// `Some(true)` when the work was asked for, `Some(false)` when it was called off.
 pub(super) fn buttons(ui: &mut Ui, verb: &str, enabled: bool) -> Option<bool> {
+    let accent = accent_button(ui, verb);
+    let cancel = Button::new("Cancel");
+    row_of(ui, accent, enabled, cancel)
+}
+
+/// As [`buttons`], where what was asked for may hurt or cannot be taken back: calling it off is what stands out.
+pub(super) fn buttons_with_care(ui: &mut Ui, verb: &str) -> Option<bool> {
+    let color = Role::Warning.color(theme::tokens(ui));
+    let cancel = accent_button(ui, "Cancel");
+    row_of(ui, Button::new(RichText::new(verb).color(color)), true, cancel)
+}
+
+fn row_of(ui: &mut Ui, done: Button<'_>, enabled: bool, cancel: Button<'_>) -> Option<bool> {
     ui.add_space(space::S);
     // One row high: left alone, the layout would take all the height there is and push the rest out.
     let row = egui::vec2(ui.available_width(), BUTTON_ROW_HEIGHT);
     ui.allocate_ui_with_layout(row, egui::Layout::right_to_left(egui::Align::Center), |ui| {
-        let done = ui.add_enabled(enabled, accent_button(ui, verb)).clicked();
-        let cancelled = ui.button("Cancel").clicked();
+        let done = ui.add_enabled(enabled, done).clicked();
+        let cancelled = ui.add(cancel).clicked();
         if done { Some(true) } else { cancelled.then_some(false) }
     })
     .inner

@@ -4,7 +4,7 @@ use egui::Ui;
 use plumbline_engine::View;
 use plumbline_model::listed;
 
-use super::sheet::{Asked, buttons, title};
+use super::sheet::{Asked, buttons_with_care, title};
 use crate::operator::guidance::is_screen_to_be_decided;
 
 /// What was solved, is proposed, and is kept nowhere before it is accepted.
@@ -46,7 +46,7 @@ pub(super) fn lost_by_closing(view: &View) -> Option<String> {
 /// Asks whether to close although something was not accepted.
 pub(super) fn sheet_of_unaccepted(ui: &mut Ui, view: &View) -> Asked {
     title(ui, "Close without accepting?", &lost_by_closing(view).unwrap_or_default());
-    match buttons(ui, "Close all the same", true) {
+    match buttons_with_care(ui, "Close all the same") {
         Some(true) => Asked::Close,
         Some(false) => Asked::Closed,
         None => Asked::Open,

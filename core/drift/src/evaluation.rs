@@ -107,7 +107,7 @@ fn by_model(table: &LocalizationTable, model: &RobotModel) -> Vec<GridPlace> {
     let rig = model.rig();
     places_by(table, rig, |row: &LocalizationRow, posture| {
         let in_left = rig.robot_from_left(posture).inverse() * row.estimate?;
-        let seen = SeenUnder { t_secs: row.t_secs, background_m: row.background_m };
+        let seen = SeenUnder { t_secs: row.t_secs, background_m: row.background_m, ..SeenUnder::default() };
         Some(model.place(&in_left, &Matrix3::zeros(), posture, &seen)?.point)
     })
 }

@@ -119,7 +119,7 @@ fn corrected(rig: &Arc<Rig>, finding: &Finding) -> RobotModel {
 /// Mean, largest error (m) and stated standard deviation (m) over 9 by 4 places at this height.
 fn judged(model: &RobotModel, at_s: f64, above_m: f64) -> [f64; 3] {
     let rig = model.rig();
-    let under = SeenUnder { t_secs: Some(at_s), background_m: None };
+    let under = SeenUnder { t_secs: Some(at_s), ..SeenUnder::default() };
     let errors: Vec<[f64; 2]> = (0..36)
         .map(|k| {
             let (x, y) = (0.2 + 0.4 / 3.0 * f64::from(k / 9), -0.4 + 0.1 * f64::from(k % 9));

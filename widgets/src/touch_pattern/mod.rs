@@ -248,10 +248,17 @@ impl TouchMark {
     }
 }
 
-/// A round magnification (1, 2, 5, 10, …) at which the largest of these lengths is about
-/// `wanted` long; 1 without lengths.
+/// Of more than ten lengths so many are drawn no longer than wanted: one touch that slipped does not make all others
+/// dots.
+const MOST_FIT: f64 = 0.9;
+
+/// A round magnification (1, 2, 5, 10, …) at which the largest of these lengths, but for the few that lie far off, is
+/// about `wanted` long; 1 without lengths.
 pub fn error_scale(lengths: impl Iterator<Item = f64>, wanted: f64) -> f64 {
-    let largest = lengths.filter(|length| length.is_finite()).fold(0.0, f64::max);
+    let mut lengths: Vec<f64> = lengths.filter(|length| length.is_finite()).collect();
+    lengths.sort_by(f64::total_cmp);
+    let last = (MOST_FIT * lengths.len().saturating_sub(1) as f64).ceil() as usize;
+    let largest = lengths.get(last).copied().unwrap_or(0.0);
     let most = if largest > 0.0 { wanted / largest } else { 1.0 };
     let power = 10f64.powf(most.max(1.0).log10().floor());
     let steps = [5.0, 2.0, 1.0].map(|factor| factor * power);
@@ -283,5 +290,7 @@ mod tests {
         assert_eq!(error_scale([90.0].into_iter(), 40.0), 1.0);
         assert_eq!(error_scale([f64::NAN].into_iter(), 40.0), 1.0);
         assert_eq!(error_scale(std::iter::empty(), 40.0), 1.0);
+        let slipped = (0..11).map(|i| if i == 5 { 90.0 } else { 3.0 });
+        assert_eq!(error_scale(slipped, 40.0), 10.0, "one that slipped does not shrink all others");
     }
 }

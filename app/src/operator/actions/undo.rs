@@ -51,6 +51,9 @@ pub fn undo(view: &View, screen: Screen) -> Result<Undo, NoUndo> {
         Screen::Collect => of_pairs(view),
         Screen::Images => of_boxes(view),
         Screen::Judge | Screen::Accept => of_result(view, Subject::Eyes),
+        Screen::Mount if view.mount.can_undo => {
+            Ok(Undo::of_workflow("Views", "the last deletion of views", MountCommand::Undo))
+        }
         Screen::Mount => of_result(view, Subject::Mount),
         Screen::Touch => of_result(view, Subject::Screen),
         // What is edited is finer than what is in use, and is what the hand was at.

@@ -13,7 +13,7 @@ use super::robot;
 use super::sentence::{Guidance, say};
 use crate::operator::snapshot::models::FEWEST_FOR_A_NETWORK;
 use crate::operator::words::proof::{Proof, Worth, model_was_better};
-use crate::operator::words::{capitalized, sentence};
+use crate::operator::words::{self, capitalized};
 use crate::operator::{Action, Preset, Screen, TouchAction, is_under_way, needs_window};
 
 pub(super) fn touch(view: &View) -> Guidance {
@@ -169,10 +169,11 @@ fn finished(view: &View) -> Guidance {
     if is_screen_to_be_decided(touch)
         && let Some(place) = &touch.placement_proposal
     {
-        let said = measured(place);
+        let (good, said) = measured(place);
         let guidance = match touch.proposal_is_older {
             true => say(format!("By an earlier run than the one shown: {said}")).warn(),
-            false => say(said),
+            false if good => say(said),
+            false => say(said).warn(),
         };
         return guidance.then("Use this place of the screen", Action::Touch(TouchAction::AcceptScreen));
     }
@@ -203,15 +204,12 @@ fn finished(view: &View) -> Guidance {
     }
 }
 
-/// Where the screen was found to lie, and what makes that doubtful, before it is used.
-pub fn measured(place: &ScreenPlacement) -> String {
+/// Whether the place that was found can be trusted, a sentence, and where the screen was found to lie.
+pub fn measured(place: &ScreenPlacement) -> (bool, String) {
     let moved_m = place.moved_m.iter().map(|m| m * m).sum::<f64>().sqrt();
-    let touches = format::count(place.touches, "touch");
-    let [moved, left] = [moved_m, place.rms_m].map(format::mm);
-    let doubt = place.remarks.first().map_or_else(String::new, |remark| format!(" {}", sentence(remark)));
-    format!(
-        "The screen lies {moved} from where it was built to lie; {left} are left over at {touches}.{doubt} Nothing moves."
-    )
+    let (good, verdict) = words::screen::verdict(place);
+    let moved = format::mm(moved_m);
+    (good, format!("{verdict} It lies {moved} from where it was built to lie. Nothing moves."))
 }
 
 /// Whether a measured place of the screen is what the operator waits for. Touches that were made for something

@@ -63,6 +63,22 @@ pub fn choice(text: &str, candidates: &[Candidate]) -> String {
     whose.map_or_else(|| parameter_words::place(text), lower)
 }
 
+/// What is said before the value of a parameter; the joint that it belongs to, where one effect stands for every joint,
+/// as those that were tried call it: "right elbow bend off by".
+pub fn before_value(parameter: &str, candidates: &[Candidate]) -> String {
+    let said = parameter_words::said(parameter);
+    let of_joint = |candidate: &&Candidate| {
+        !candidate.site.is_empty() && parameter.starts_with(&format!("{}_", candidate.site))
+    };
+    let site =
+        candidates.iter().filter(of_joint).map(|candidate| &candidate.site).max_by_key(|site| site.len());
+    site.and_then(|site| {
+        let rest = said.strip_prefix(&parameter_words::place(site))?;
+        Some(format!("{}{rest}", choice(site, candidates)))
+    })
+    .unwrap_or(said)
+}
+
 /// How much less probable the runner-up is: "200 times less probable".
 pub fn odds(margin_log10: f64) -> String {
     let odds = 10f64.powf(margin_log10);
@@ -107,6 +123,21 @@ mod tests {
         assert_eq!(named("link-length", "right_upper_arm", title), "link length of the right upper arm");
         // Without a title the site is read.
         assert_eq!(named("link-length", "forearm_r", "wrong length"), "link length of the right forearm");
+    }
+
+    #[test]
+    fn a_joint_among_all_is_called_as_everywhere() {
+        let mut of_joint = sample::named().candidates[0].clone();
+        (of_joint.site, of_joint.title) =
+            ("r_elbow_y".to_owned(), "Right elbow bend: zero position off".to_owned());
+        let candidates = [of_joint];
+        assert_eq!(before_value("r_elbow_y_offset_rad", &candidates), "right elbow bend off by");
+        assert_eq!(
+            before_value("r_elbow_y_offset_rad", &[]),
+            "right elbow y off by",
+            "nobody gave it a title"
+        );
+        assert_eq!(before_value("offset_rad", &candidates), "off by");
     }
 
     #[test]

@@ -8,6 +8,7 @@ pub mod health;
 pub mod mount;
 pub mod proof;
 pub mod robot;
+pub mod screen;
 pub mod sources;
 pub mod timeline;
 pub mod trials;

@@ -70,7 +70,7 @@ fn table(ui: &mut Ui, candidates: &[&Candidate], all: &[Candidate]) -> egui::Rec
         true => [width - 68.0, 68.0, 0.0, 0.0],
         false => [width - 198.0, 68.0, 54.0, 76.0],
     };
-    let header = ["", "probability", "pull, σ", "the data"];
+    let header = ["", "probability", "size, σ", "the data"];
     candidate_row(ui, columns, header.map(|text| (text.to_owned(), true)), None);
     let area = ScrollArea::vertical().auto_shrink(false);
     let shown = area.show_rows(ui, CANDIDATE_ROW, candidates.len(), |ui, shown| {
@@ -85,7 +85,12 @@ fn table(ui: &mut Ui, candidates: &[&Candidate], all: &[Candidate]) -> egui::Rec
             ];
             let name = capitalized(&effect::named(&candidate.id, &candidate.site, &candidate.title));
             let pull = format::fixed(candidate.score_sigmas, 1);
-            candidate_row(ui, columns, cells, Some(format!("{name}. Pull {pull} σ. {meaning}")));
+            candidate_row(
+                ui,
+                columns,
+                cells,
+                Some(format!("{name}. What the rest leaves points its way by {pull} σ. {meaning}")),
+            );
         }
     });
     shown.inner_rect

@@ -21,7 +21,7 @@ pub fn sizes(ui: &mut Ui, effect: &NamedEffect, finding: &Finding) {
     let mut rows: Vec<Row> = told
         .into_iter()
         .map(|found| {
-            let name = theme::weak(ui, parameter::words(&found.name));
+            let name = theme::weak(ui, effect_words::before_value(&found.name, &finding.candidates));
             match &found.text {
                 Some(text) => {
                     [name, RichText::new(effect_words::choice(text, &finding.candidates)), RichText::new("")]

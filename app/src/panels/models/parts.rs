@@ -12,11 +12,11 @@ pub fn facts(cx: &mut PanelContext<'_>) -> Arc<Facts> {
     cx.state.models.standing.get(Basis::of(models), || Facts::of(models))
 }
 
-/// What the network of a method looks like as published (inputs, hidden, outputs), or what it is instead; short, for a narrow tile.
+/// What a method is made of; short, for a narrow tile.
 pub fn about(method: Method) -> &'static str {
     match method {
         Method::M1 => "place and heights of the grid",
-        Method::M2 => "network 2–16–2, height of M1",
-        Method::M3 => "network 2–64–3 for x, y, z",
+        Method::M2 => "small network, height of M1",
+        Method::M3 => "larger network for x, y, z",
     }
 }

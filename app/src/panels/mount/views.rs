@@ -21,6 +21,11 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             action_button(ui, cx, MountAction::Plan, "Plan");
             action_button(ui, cx, MountAction::Capture, "Take a view");
             action_button(ui, cx, MountAction::DeleteAll, "Delete all");
+            if mount.can_undo
+                && ui.button("Undo").on_hover_text("Brings back the views deleted last").clicked()
+            {
+                cx.outbox.send(MountCommand::Undo);
+            }
         });
         ui.add_space(space::XS);
         if mount.views.is_empty() && mount.planned.is_empty() {

@@ -74,7 +74,7 @@ fn placed(ui: &mut Ui, object: &ObjectView, place: &ObjectPlaceView) {
         ui,
         "object evidence",
         &[
-            KeyValue::optional("Off the epipolar line", Quantity::Pixels, object.epipolar_px)
+            KeyValue::optional("Vertical error", Quantity::Pixels, object.epipolar_px)
                 .help("How far the two boxes lie from each other's epipolar line"),
             KeyValue::optional("Pixels that voted", Quantity::Ratio, share)
                 .help("Share of its box in the left eye whose pixels decided the distance; they are colored in the picture"),

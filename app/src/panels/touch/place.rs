@@ -9,9 +9,10 @@ use plumbline_widgets::key_value::big_figure;
 use plumbline_widgets::theme::{self, Role, space};
 
 use super::words;
-use crate::operator::{Action, Preset, TouchAction};
+use crate::operator::words::{screen, sentence};
+use crate::operator::{Action, Preset, TouchAction, Verdict};
 use crate::panels::parts::{action_button, warning};
-use crate::panels::{PanelContext, padded};
+use crate::panels::{PanelContext, padded, verdict_line};
 
 /// Axes of the robot frame: what moving along and turning about them means for the screen.
 const AXES: [(&str, &str); 3] =
@@ -36,12 +37,17 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     padded(ui, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             figures(ui, shown, what);
-            table(ui, touch);
-            for remark in &shown.remarks {
-                warning(ui, remark);
-            }
-            ui.add_space(space::S);
             ui.horizontal_wrapped(|ui| buttons(ui, cx));
+            ui.add_space(space::S);
+            table(ui, touch);
+            let doubts = shown.doubts();
+            for remark in &shown.remarks {
+                if doubts.contains(remark) {
+                    warning(ui, remark);
+                } else {
+                    ui.label(theme::weak(ui, sentence(remark)));
+                }
+            }
         });
     });
 }
@@ -53,6 +59,9 @@ fn shown(touch: &TouchView) -> Option<(&ScreenPlacement, &'static str)> {
 }
 
 pub(super) fn figures(ui: &mut Ui, placement: &ScreenPlacement, what: &str) {
+    let (good, sentence) = screen::verdict(placement);
+    verdict_line::show(ui, &Verdict { good, sentence });
+    ui.add_space(space::XS);
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = space::L;
         big_figure(ui, &format!("moved, {what}"), &format::mm(norm(placement.moved_m)), Role::Difference);

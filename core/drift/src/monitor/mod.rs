@@ -133,7 +133,7 @@ impl Monitor {
     ) -> Option<Self> {
         let mut monitor = Self::default();
         let seen =
-            |sample: &Sample| SeenUnder { t_secs: knows_when.then_some(sample.at_s), background_m: None };
+            |sample: &Sample| SeenUnder { t_secs: knows_when.then_some(sample.at_s), ..SeenUnder::default() };
         let first = seen(samples.first()?);
         for sample in samples {
             let table = errors(model, posture, sample.look.turns_rad, &first, &seen(sample))?;

@@ -99,7 +99,7 @@ impl Watcher {
     /// # Errors
     /// When the images are of another size, or there is too little to see in them; nothing is forgotten.
     pub fn look(&mut self, setup: &WatcherSetup, pair: (&GrayImage, &GrayImage)) -> Result<Look, WatchError> {
-        let now = SeenUnder { t_secs: setup.eyes_on_s, background_m: None };
+        let now = SeenUnder { t_secs: setup.eyes_on_s, ..SeenUnder::default() };
         let first = *self.first.get_or_insert(now);
         let stood = self.stood(setup);
         let mut epipolar = None;

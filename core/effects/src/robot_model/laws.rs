@@ -69,7 +69,7 @@ fn turned_head(rig: &Rig) -> Posture {
     rig.home().with(&[rig.eyes.pan, rig.eyes.tilt], &[0.2, -0.5])
 }
 
-const SEEN: SeenUnder = SeenUnder { t_secs: Some(900.0), background_m: Some(0.9) };
+const SEEN: SeenUnder = SeenUnder { t_secs: Some(900.0), background_m: Some(0.9), apart_rad: 0.0 };
 
 #[test]
 fn without_effects_every_answer_is_the_descriptions_own() {

@@ -52,7 +52,7 @@ impl RobotModel {
     /// rays of both eyes, rad.
     fn left_of_row(&self, table: &LocalizationTable, row: &LocalizationRow) -> Option<Vector3<f64>> {
         let posture = self.posture_of(table, row);
-        let seen = SeenUnder { t_secs: row.t_secs, background_m: row.background_m };
+        let seen = SeenUnder { t_secs: row.t_secs, background_m: row.background_m, ..SeenUnder::default() };
         let (left, right) = self.project(&row.truth?, &posture, &seen)?;
         let predicted = self.rig.eyes.cameras.triangulate(left, right)?;
         let measured = self.rig.robot_from_left(&posture).inverse() * row.estimate?;
@@ -69,7 +69,7 @@ impl RobotModel {
         at_s: f64,
     ) -> Option<Vector3<f64>> {
         let posture = self.posture_of(table, row);
-        let seen = SeenUnder { t_secs: Some(at_s), background_m: row.background_m };
+        let seen = SeenUnder { t_secs: Some(at_s), background_m: row.background_m, ..SeenUnder::default() };
         let (left, right) = self.project(&row.truth?, &posture, &seen)?;
         let grown = self.natural(self.rig.eyes.cameras.triangulate(left, right)?)?;
         let still = self.natural(self.rig.robot_from_left(&posture).inverse() * row.truth?)?;

@@ -22,6 +22,9 @@ pub struct SeenUnder {
     pub t_secs: Option<f64>,
     /// Distance of what lies behind, m.
     pub background_m: Option<f64>,
+    /// How far the right eye was seen to have turned against the left one since both were calibrated, rad; 0: nobody has
+    /// seen that. It moves no place, but places are no better known than that.
+    pub apart_rad: f64,
 }
 
 /// Where something is.
@@ -31,7 +34,8 @@ pub struct PlaceInRobot {
     pub point: Point<Robot>,
     /// Covariance in the robot's axes, m²: that of what was seen, that of the effects' values with what they
     /// leave of the rows that they were found in, that of mount and lenses, or how far those usually are off where
-    /// nobody measured them, and how far eyes usually have turned since they were calibrated colder or warmer.
+    /// nobody measured them, and how far eyes usually have turned since they were calibrated colder or warmer,
+    /// or were seen to have.
     pub covariance_m2: Matrix3<f64>,
     /// The part of it by how both eyes sit in the head, m²: it moves all that is seen alike, and nothing nearer to the eyes or
     /// farther away.

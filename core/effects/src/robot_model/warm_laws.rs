@@ -58,7 +58,7 @@ fn places() -> [Point<LeftCamera>; 3] {
 
 /// How far two models put what is seen at a time (s) from each other, the largest of some places, m.
 fn apart_m(a: &RobotModel, b: &RobotModel, t_secs: Option<f64>) -> f64 {
-    let (posture, seen) = (a.rig().home(), SeenUnder { t_secs, background_m: None });
+    let (posture, seen) = (a.rig().home(), SeenUnder { t_secs, ..SeenUnder::default() });
     let put = |model: &RobotModel, in_left: &Point<LeftCamera>| {
         model.place(in_left, &Matrix3::zeros(), &posture, &seen).expect("a place").point
     };

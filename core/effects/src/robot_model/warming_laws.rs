@@ -20,7 +20,7 @@ fn calibrated(cameras_s: Option<f64>, mount_s: Option<f64>) -> Arc<Rig> {
 }
 
 fn under(t_secs: Option<f64>) -> SeenUnder {
-    SeenUnder { t_secs, background_m: None }
+    SeenUnder { t_secs, ..SeenUnder::default() }
 }
 
 /// Of a place half a meter away, one standard deviation in the worst direction, m.
@@ -71,4 +71,7 @@ fn what_is_not_known_is_not_guessed_and_what_was_watched_is_not_added_again() {
     let watched = model(&calibrated(Some(CALIBRATED_S), Some(CALIBRATED_S)), vec![watched]);
     assert_eq!(watched.turned_since(&under(Some(0.0))), Turned::default());
     assert!(sigma_m(&watched, Some(0.0)) < 1e-6);
+    // What was seen is seen, whatever an effect in force says.
+    let seen = SeenUnder { apart_rad: 0.006, ..under(Some(0.0)) };
+    assert_eq!(watched.turned_since(&seen), Turned { apart_rad: 0.006, together_rad: 0.0 });
 }

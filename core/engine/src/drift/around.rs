@@ -123,7 +123,7 @@ impl DriftAround {
     fn board(&self, board: &BoardAt, posture: &Posture) -> Option<Reference> {
         let [left, right] = &board.outlines;
         let in_left = self.model.rig().eyes.cameras.triangulate(left[0], right[0])?;
-        let seen = SeenUnder { t_secs: self.eyes_on_s, background_m: None };
+        let seen = SeenUnder { t_secs: self.eyes_on_s, ..SeenUnder::default() };
         let place = self.model.place(&in_left, &Matrix3::zeros(), posture, &seen)?.point;
         let outlines = [left.to_vec(), right.to_vec()];
         Some(Reference { name: "Board".to_owned(), kind: ReferenceKind::Thing, place, outlines })
@@ -157,7 +157,7 @@ impl DriftAround {
         corners: &[Point<Robot>],
         posture: &Posture,
     ) -> Option<Reference> {
-        let seen = SeenUnder { t_secs: self.eyes_on_s, background_m: None };
+        let seen = SeenUnder { t_secs: self.eyes_on_s, ..SeenUnder::default() };
         let pairs: Option<Vec<_>> =
             corners.iter().map(|corner| self.model.project(corner, posture, &seen)).collect();
         let (left, right) = pairs?.into_iter().unzip();

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use jiff::Timestamp;
 use plumbline_drift::evaluation_places_m;
+use plumbline_effects::SeenUnder;
 use plumbline_grasp::things::Thing;
 use plumbline_model::session::LocalizationRow;
 use plumbline_model::{Point, Robot};
@@ -229,7 +230,7 @@ impl GridRun {
     fn row(&self, around: &DriftAround, place: Option<Point<Robot>>) -> Option<LocalizationRow> {
         let (model, posture) = (&around.model, around.posture());
         let rig = model.rig();
-        let seen = plumbline_effects::SeenUnder { t_secs: around.eyes_on_s, background_m: None };
+        let seen = SeenUnder { t_secs: around.eyes_on_s, ..SeenUnder::default() };
         let mut row = LocalizationRow {
             truth: Some(self.target(around)),
             head_rad: [rig.eyes.pan, rig.eyes.tilt].map(|joint| Some(posture[joint])).to_vec(),

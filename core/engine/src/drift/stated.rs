@@ -43,7 +43,7 @@ impl Stated {
 
 fn stated_m(table: &[[PlaceError; 3]; 3], around: &DriftAround, on_s: f64) -> Option<[f64; 3]> {
     let (model, posture) = (&around.model, around.posture());
-    let seen = SeenUnder { t_secs: Some(on_s), background_m: None };
+    let seen = SeenUnder { t_secs: Some(on_s), ..SeenUnder::default() };
     let of_row = |[_, middle, _]: &[PlaceError; 3]| {
         let at = Point::new(middle.at_m.x, middle.at_m.y, middle.at_m.z);
         let (left, right) = model.project(&at, &posture, &seen)?;

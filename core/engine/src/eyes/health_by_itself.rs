@@ -25,6 +25,9 @@ const MOST_SHARE: f64 = 0.03;
 const AGAIN: Duration = Duration::from_secs(5);
 /// So often in a row it must look bad before that is said: a hand before an eye is no turned eye.
 const BAD_IN_A_ROW: u32 = 2;
+/// What looked bad is looked at again after this time, whatever that takes: nobody should work long with turned eyes, and
+/// by then a hand that passed is gone.
+const SOON: Duration = Duration::from_secs(20);
 
 /// When it looks next, and what it has told.
 #[derive(Clone, Debug, Default)]
@@ -41,8 +44,18 @@ pub(super) struct ByItself {
     bad: Option<(Arc<StereoCalibration>, u32)>,
     /// Which one was said to be bad.
     told: Option<Arc<StereoCalibration>>,
-    /// Which one has looked bad more than once, and how bad last, in words.
-    off: Option<(Arc<StereoCalibration>, String)>,
+    /// Which one has looked bad more than once, and how bad last.
+    off: Option<Off>,
+}
+
+/// A calibration that does not hold any more.
+#[derive(Clone, Debug)]
+struct Off {
+    of: Arc<StereoCalibration>,
+    /// How bad it is, in words.
+    said: String,
+    /// How far the right eye has turned against the left one, rad.
+    turn_rad: f64,
 }
 
 impl EyesWorkflow {
@@ -137,8 +150,18 @@ impl EyesWorkflow {
 
     /// Why the calibration in use does not hold any more; `None`: nobody has seen that, or it is told otherwise now.
     pub fn does_not_hold(&self) -> Option<&str> {
-        let (of, said) = self.health.by_itself.off.as_ref()?;
-        self.in_use().is_some_and(|in_use| Arc::ptr_eq(of, in_use)).then_some(said.as_str())
+        self.off().map(|off| off.said.as_str())
+    }
+
+    /// How far the right eye was seen to have turned against the left one since the calibration in use was made, rad; 0:
+    /// nobody has seen that, or it is told otherwise now.
+    pub fn turned_apart_rad(&self) -> f64 {
+        self.off().map_or(0.0, |off| off.turn_rad)
+    }
+
+    fn off(&self) -> Option<&Off> {
+        let off = self.health.by_itself.off.as_ref()?;
+        self.in_use().is_some_and(|in_use| Arc::ptr_eq(&off.of, in_use)).then_some(off)
     }
 
     /// Says once that the calibration in use does not hold any more, and that it does again; whether it did.
@@ -173,7 +196,11 @@ impl EyesWorkflow {
         let times = before.map_or(0, |(_, times)| times) + 1;
         by_itself.bad = Some((of.in_use.clone(), times));
         if times >= BAD_IN_A_ROW {
-            by_itself.off = Some((of.in_use.clone(), does_not_hold(health)));
+            let turn_rad = health.in_use.turn_rad;
+            by_itself.off = Some(Off { of: of.in_use.clone(), said: does_not_hold(health), turn_rad });
+        } else {
+            let soon = context.time.instant + SOON;
+            by_itself.due = by_itself.due.map(|due| due.min(soon));
         }
         if !ask.by_itself {
             // Who asked reads it where he has asked.

@@ -13,7 +13,7 @@ use plumbline_model::{
 };
 
 use super::command::AimChoice;
-use super::wide::wide_because;
+use super::wide::{SEEN_TURNED, wide_because};
 use crate::ground::text::sentence;
 
 /// What rectification and measuring rest on. Results of an older one are not shown any more.
@@ -35,6 +35,9 @@ pub struct LiveSetup {
     pub posture: Posture,
     /// For how long the eyes have been on, s, where somebody knows it: lenses move as they warm up.
     pub eyes_on_s: Option<f64>,
+    /// How far the right eye was seen to have turned against the left one since they were calibrated, rad; 0: nobody has
+    /// seen that.
+    pub apart_rad: f64,
 }
 
 impl LiveSetup {
@@ -54,14 +57,15 @@ impl LiveSetup {
 
     /// What the effects of the eyes depend on besides the posture.
     pub fn seen_under(&self) -> SeenUnder {
-        SeenUnder { t_secs: self.eyes_on_s, ..SeenUnder::default() }
+        SeenUnder { t_secs: self.eyes_on_s, apart_rad: self.apart_rad, ..SeenUnder::default() }
     }
 
     /// Why the uncertainty of places is wide, or what it leaves out, and what to do; `None`: all that they rest on was
     /// measured with eyes about as warm as now, and says how well it is known.
     pub fn wide_because(&self) -> Option<&'static str> {
         let turned = self.model.turned_since(&self.seen_under());
-        wide_because(self.model.unmeasured(), self.calibration.covariance.is_some(), turned)
+        let said = wide_because(self.model.unmeasured(), self.calibration.covariance.is_some(), turned);
+        said.map(|said| if self.apart_rad > 0.0 { SEEN_TURNED } else { said })
     }
 
     /// Where the left eye is.

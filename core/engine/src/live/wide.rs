@@ -21,6 +21,10 @@ pub fn wide_because(unmeasured: Unmeasured, is_told: bool, turned: Turned) -> Op
     }
 }
 
+/// Where somebody has seen that the eyes have turned: that goes before all that is merely usual.
+pub(super) const SEEN_TURNED: &str = "The ± is wide because the calibration of the eyes does not hold any more: it holds how \
+     far the right eye was seen to have turned. Calibrate the eyes again in step 1, Eyes; the screen Drift says what has \
+     turned.";
 const TURNED: &str = "The ± is wide because the eyes are colder or warmer than when they were calibrated: it holds how far \
      eyes usually turn meanwhile. Where they are warm by now (the clock in the top line), calibrate them again in step 1, \
      Eyes.";

@@ -19,6 +19,8 @@ pub enum MountCommand {
     },
     /// Removes all views.
     DeleteAll,
+    /// Brings back the views that were deleted last, as long as no mount was accepted since.
+    Undo,
     /// Solves; gives a proposal.
     Solve,
     /// Makes the proposal the mount in use.

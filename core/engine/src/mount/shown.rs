@@ -15,6 +15,7 @@ impl MountWorkflow {
     pub(super) fn shown(&self, around: &MountAround) -> MountView {
         MountView {
             step: self.step_state(around),
+            can_undo: !self.deleted.is_empty(),
             views: self.views.iter().map(|view| self.summary(view, around)).collect(),
             is_solved: self.is_solved(),
             planned: self.still_to_be_seen().into(),

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use image::{GrayImage, RgbImage};
 use plumbline_model::robot::Rig;
-use plumbline_model::{Pixel, Stamp, StereoCalibration, StereoFrame, default_board};
+use plumbline_model::{Chessboard, Pixel, Stamp, StereoCalibration, StereoFrame, default_board};
 
 use super::command::MountCommand;
 use super::work::Context;
@@ -174,6 +174,35 @@ fn without_its_views_every_pose_is_to_be_seen_again_also_after_stop() {
     (0..3).for_each(|_| bench.arrives());
     let view = bench.view();
     assert_eq!((view.tour, view.views.len()), (None, 3));
+}
+
+#[test]
+fn deleted_views_come_back_in_their_order_until_a_mount_is_accepted() {
+    let mut bench = Bench::new();
+    bench.tour();
+    (0..3).for_each(|_| bench.arrives());
+    let names =
+        |bench: &mut Bench| bench.view().views.iter().map(|view| view.name.clone()).collect::<Vec<_>>();
+    let all = names(&mut bench);
+    assert!(!bench.view().can_undo);
+    bench.with(|room, around, context| {
+        room.apply(MountCommand::Delete { view: "view 01".to_owned() }, around, context);
+    });
+    assert_eq!(names(&mut bench), all[1..]);
+    bench.with(|room, around, context| room.apply(MountCommand::DeleteAll, around, context));
+    assert!(bench.view().views.is_empty());
+    bench.with(|room, around, context| room.apply(MountCommand::Undo, around, context));
+    assert_eq!(names(&mut bench), all[1..]);
+    bench.with(|room, around, context| room.apply(MountCommand::Undo, around, context));
+    assert_eq!((names(&mut bench), bench.view().can_undo), (all, false));
+    // Of views of one board and of another no mount is solved.
+    bench.with(|room, around, context| {
+        room.apply(MountCommand::Delete { view: "view 01".to_owned() }, around, context);
+        room.board = room.board.map(|board| Chessboard { square_m: 2.0 * board.square_m, ..board });
+        room.apply(MountCommand::Undo, around, context);
+    });
+    assert_eq!(names(&mut bench).len(), 2);
+    assert!(bench.view().can_undo, "and none is lost by trying");
 }
 
 #[test]

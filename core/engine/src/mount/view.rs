@@ -14,6 +14,8 @@ pub struct MountView {
     pub step: StepState,
     /// Views collected so far.
     pub views: Arc<[HeadViewSummary]>,
+    /// Whether views were deleted that can be brought back.
+    pub can_undo: bool,
     /// Whether the mount in use was solved from just these views.
     pub is_solved: bool,
     /// Planned head poses (pan, tilt; rad) that are still to be seen.

@@ -40,6 +40,9 @@ pub(super) enum Refusal {
     /// Nothing to plan for.
     #[error("Neither eye sees the board. Lay it flat on the table where both eyes see all of it.")]
     NoBoardToPlan,
+    /// Nothing to bring back.
+    #[error("No view was deleted since a mount was accepted.")]
+    NothingDeleted,
     /// Views of two boards do not go together.
     #[error("Another board was used for the views so far. Remove them first.")]
     OtherBoard,
@@ -75,6 +78,8 @@ pub struct MountWorkflow {
     kept: InUse,
     shelf: Shelf,
     pub(super) views: Vec<HeadView>,
+    /// What was deleted since a mount was accepted, the newest last: it can be brought back.
+    pub(super) deleted: Vec<Deleted>,
     /// For how long the eyes had been on when they were taken, by name, min; those of which it is known.
     taken_min: BTreeMap<String, f64>,
     pub(super) board: Option<Chessboard>,
@@ -92,6 +97,15 @@ pub struct MountWorkflow {
     counted: usize,
     /// What the operator asked for and needs an image that was taken after that.
     pub(super) waiting: Option<(Waiting, Instant)>,
+}
+
+/// Views that were deleted at once.
+#[derive(Clone, Debug)]
+pub(super) struct Deleted {
+    views: Vec<HeadView>,
+    pub(super) board: Option<Chessboard>,
+    /// So many planned poses had been seen.
+    seen: usize,
 }
 
 /// What is done with the next image.
@@ -228,6 +242,7 @@ impl MountWorkflow {
             context.notices.add(NoticeLevel::Info, text);
         }
         (self.planned, self.seen) = (planned, 0);
+        self.deleted.iter_mut().for_each(|deleted| deleted.seen = 0);
     }
 
     /// For how long the eyes had been on when the views were taken, min, in the mean of those of which it is known.
@@ -235,6 +250,27 @@ impl MountWorkflow {
         let known = |view: &HeadView| self.taken_min.get(&view.name).copied();
         let known: Vec<f64> = self.views.iter().filter_map(known).collect();
         (!known.is_empty()).then(|| known.iter().sum::<f64>() / known.len() as f64)
+    }
+
+    fn delete(&mut self, is_deleted: impl Fn(&HeadView) -> bool) {
+        let views: Vec<HeadView> = self.views.extract_if(.., |view| is_deleted(view)).collect();
+        if !views.is_empty() {
+            self.deleted.push(Deleted { views, board: self.board, seen: self.seen_so_far() });
+        }
+    }
+
+    /// Brings back what was deleted last. A proposal that went with it is solved anew.
+    fn undo(&mut self) -> Result<(), Refusal> {
+        let last = self.deleted.last().ok_or(Refusal::NothingDeleted)?;
+        if last.board != self.board && !self.views.is_empty() {
+            return Err(Refusal::OtherBoard);
+        }
+        let Deleted { views, board, seen } = self.deleted.pop().ok_or(Refusal::NothingDeleted)?;
+        (self.board, self.seen) = (board, self.seen.max(seen));
+        self.views.extend(views);
+        // In the order in which they were taken: the number is the end of the name.
+        self.views.sort_by(|a, b| (a.name.len(), &a.name).cmp(&(b.name.len(), &b.name)));
+        Ok(())
     }
 
     fn take(&mut self, look: &Look, around: &MountAround) -> Result<(), Refusal> {
@@ -268,6 +304,7 @@ impl Workflow for MountWorkflow {
             shelf: mounts_in(folder),
             is_known: false,
             views: Vec::new(),
+            deleted: Vec::new(),
             taken_min: BTreeMap::new(),
             board: None,
             planned: Vec::new(),
@@ -303,16 +340,17 @@ impl Workflow for MountWorkflow {
                 self.step(around, context);
             }
             MountCommand::Capture => self.wait_for_image(Waiting::Capture, around, context),
-            MountCommand::Delete { view } => {
-                self.views.retain(|known| known.name != view);
-                self.taken_min.remove(&view);
-            }
+            MountCommand::Delete { view } => self.delete(|known| known.name == view),
             MountCommand::DeleteAll => {
+                self.delete(|_| true);
                 // Without its view no pose was seen.
                 (self.tour, self.seen) = (None, 0);
-                self.views.clear();
-                self.taken_min.clear();
                 self.proposal = None;
+            }
+            MountCommand::Undo => {
+                if let Err(reason) = self.undo() {
+                    context.refuse(reason);
+                }
             }
             MountCommand::Solve => self.solve(around, context),
             MountCommand::Accept => match self.proposal.clone() {
@@ -341,6 +379,8 @@ impl Workflow for MountWorkflow {
             MountResult::Saved(mount) => {
                 self.proposal = self.proposal.take().filter(|proposal| !Arc::ptr_eq(proposal, &mount));
                 self.in_use = Some(mount);
+                // From here on the mount itself is what is taken back.
+                self.deleted.clear();
             }
             MountResult::Restored(mount) => self.in_use = mount,
             MountResult::Forgotten => self.in_use = None,

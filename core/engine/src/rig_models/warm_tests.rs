@@ -114,7 +114,7 @@ fn seen(rig: &Rig, at: Point<Robot>, t_s: f64) -> Point<LeftCamera> {
 
 /// How far off places on the table come out at a time: the largest error (m), and how many lie in what is stated.
 fn judged(model: &RobotModel, t_s: f64) -> (f64, usize) {
-    let (rig, under) = (model.rig(), SeenUnder { t_secs: Some(t_s), background_m: None });
+    let (rig, under) = (model.rig(), SeenUnder { t_secs: Some(t_s), ..SeenUnder::default() });
     let mut result = (0.0_f64, 0);
     for [x, y] in [[0.25, -0.2], [0.4, 0.0], [0.4, 0.2], [0.55, 0.15]] {
         let at = Point::new(x, y, rig.table.height_m);
@@ -175,7 +175,7 @@ fn with_another_calibration_the_same_law_goes_on_from_there() {
         let left = cameras.left.project(&in_left.coords.coords).expect("in view");
         let seen =
             cameras.triangulate(left, cameras.right.project(&now).expect("in view")).expect("in front");
-        let under = SeenUnder { t_secs: Some(t_s), background_m: None };
+        let under = SeenUnder { t_secs: Some(t_s), ..SeenUnder::default() };
         let put = model.place(&seen, &Matrix3::zeros(), &rig.home(), &under).expect("a place");
         put.point.distance_m(&at)
     };

@@ -60,6 +60,9 @@ impl State {
     pub(super) fn use_eyes_clock(&mut self) {
         let on_s = self.eyes_on_s(self.shown).map(f64::floor);
         self.rooms.live.set_eyes_on(on_s);
+        let is_recorded = is_recording(self.rooms.source.view().spec.as_ref());
+        let apart_rad = if is_recorded { 0.0 } else { self.rooms.eyes.of(self.shown).turned_apart_rad() };
+        self.rooms.live.set_seen_apart(apart_rad);
     }
 
     /// The cameras may have been away.

@@ -13,6 +13,8 @@ pub struct TimelineAround {
     pub is_twin: bool,
     /// What is in use, of those kinds of which that is known already.
     pub in_use: Vec<Standing>,
+    /// What was seen of something in use since, and speaks against it; a sentence each.
+    pub against: Vec<(Subject, String)>,
     /// Findings that were kept, in any order.
     pub findings: Vec<Finding>,
     /// What else was measured and is shown in its workflow, oldest first.

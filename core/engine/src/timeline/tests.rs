@@ -279,6 +279,9 @@ fn the_whole_setup_is_written_as_table_and_as_page() {
         Lab::on(folder.path(), TimelineAround { rig: "nico".to_owned(), ..TimelineAround::default() });
     lab.now(vec![eyes(Some("a, \"the first\""), Some(0.2))]);
     lab.now(vec![eyes(Some("b"), Some(0.08))]);
+    let off = "The calibration of the eyes does not hold any more.".to_owned();
+    lab.around.against =
+        vec![(Subject::Eyes, off.clone()), (Subject::Mount, "Nothing is in use.".to_owned())];
     let mut written = |name: &str, format: TimelineFormat| {
         let file = folder.path().join(name);
         let command = TimelineCommand::Report { file: file.clone(), format };
@@ -293,5 +296,6 @@ fn the_whole_setup_is_written_as_table_and_as_page() {
     assert_eq!(&rows[0][10], "a, \"the first\"");
     let page = String::from_utf8(written("setup.html", TimelineFormat::Html)).expect("text");
     assert!(page.contains("Setup of nico") && page.contains("0.080 px") && page.contains("0.200 px"));
+    assert!(page.contains(&off) && !page.contains("Nothing is in use."), "beside what is in use only");
     assert!(written("setup.pdf", TimelineFormat::Pdf).starts_with(b"%PDF"));
 }

@@ -52,6 +52,38 @@ pub struct ScreenPlacement {
     pub rig: String,
 }
 
+impl ScreenPlacement {
+    /// What speaks against using it, a sentence each: touches that lie far off, touches too few and too far apart to
+    /// judge, a screen that leans. The other remarks only say how it was found.
+    pub fn doubts(&self) -> Vec<String> {
+        let residuals: Vec<Vector3<f64>> = self.residuals_m.iter().copied().map(Into::into).collect();
+        let Some((noise_m, remarks)) = self.noise() else { return Vec::new() };
+        let is_few = 3 * residuals.len() - 6 < TELLING_FREEDOM && noise_m > USUAL_NOISE_M;
+        let few = remarks.into_iter().filter(|_| is_few);
+        few.chain(speaking_against(&residuals, noise_m, lean_rad(&self.screen, self.turned_rad.into())))
+            .collect()
+    }
+
+    /// Whether its touches disagree by more than a fingertip's: the arm itself errs.
+    pub fn arm_errs(&self) -> bool {
+        self.noise().is_some_and(|(noise_m, _)| error_of_the_arm(noise_m).is_some())
+    }
+
+    fn noise(&self) -> Option<(f64, Vec<String>)> {
+        let sum: f64 = self.residuals_m.iter().flatten().map(|along| along * along).sum();
+        let touches = self.residuals_m.len();
+        (touches >= 3).then(|| noise(sum, touches))
+    }
+
+    /// How far its middle may lie beside where it was found along any axis (95 %), m: what all touches share is not in it.
+    pub fn known_to_m(&self) -> f64 {
+        NORMAL_95 * self.sd_m.iter().fold(0.0_f64, |most, sd| most.max(*sd))
+    }
+}
+
+/// Of a normal distribution 95 % lie within so many standard deviations.
+const NORMAL_95: f64 = 1.96;
+
 /// Places the screen: the rigid motion (six degrees of freedom, size kept) that brings touched
 /// pixels of the nominal screen nearest to where the model says the fingertip was, in the sense of
 /// least squares (Horn 1987; Umeyama 1991).
@@ -81,8 +113,9 @@ pub fn place_screen(
     let sum: f64 = residuals.iter().map(Vector3::norm_squared).sum();
     let rms_m = (sum / touches.len() as f64).sqrt();
     let (noise_m, mut remarks) = noise(sum, touches.len());
-    remarks.extend(outlying(&residuals, noise_m));
-    remarks.extend(errors_of_the_arm(nominal, &screen, noise_m));
+    let turned = motion.rotation.scaled_axis();
+    remarks.extend(speaking_against(&residuals, noise_m, lean_rad(&screen, turned)));
+    remarks.extend(error_of_the_arm(noise_m));
     let middle = screen.point_at(screen.middle()).coords.coords;
     let places = touches.iter().map(|(pixel, _)| screen.point_at(*pixel).coords.coords - middle);
     let sd = standard_deviations(places, noise_m).ok_or(PlacementError::OnALine { spread_m: 0.0 })?;
@@ -90,7 +123,7 @@ pub fn place_screen(
     Ok(ScreenPlacement {
         screen,
         moved_m: moved.into(),
-        turned_rad: motion.rotation.scaled_axis().into(),
+        turned_rad: turned.into(),
         sd_m: [sd[0], sd[1], sd[2]],
         sd_rad: [sd[3], sd[4], sd[5]],
         rms_m,
@@ -225,24 +258,33 @@ fn outlying(residuals: &[Vector3<f64>], noise_m: f64) -> Vec<String> {
     .collect()
 }
 
-/// What only an arm that errs can explain. A rigid placement takes in what it can of that.
-fn errors_of_the_arm(nominal: &Touchscreen, screen: &Touchscreen, noise_m: f64) -> Vec<String> {
-    let mut remarks = vec![];
-    if noise_m > ARM_ERROR_M {
-        remarks.push(format!(
-            "the touches disagree by {:.1} mm per axis, which is more than a fingertip's: the arm itself errs, and \
-             the placement is the best compromise over the touched places",
-            noise_m * 1e3
-        ));
-    }
-    let lean_rad = screen.normal().angle_rad(&nominal.normal());
+/// What speaks against a place, a sentence each.
+fn speaking_against(residuals: &[Vector3<f64>], noise_m: f64, lean_rad: f64) -> Vec<String> {
+    let mut against = outlying(residuals, noise_m);
     if lean_rad > LARGEST_LEAN_RAD {
-        remarks.push(format!(
+        against.push(format!(
             "the screen seems to lean by {:.1}° against the rig file: if it does not, errors of the arm look like that",
             lean_rad.to_degrees()
         ));
     }
-    remarks
+    against
+}
+
+/// How far a screen leans against its nominal normal after a turn (rotation vector), rad.
+fn lean_rad(screen: &Touchscreen, turned: Vector3<f64>) -> f64 {
+    let normal = screen.normal().vector();
+    normal.angle(&(UnitQuaternion::from_scaled_axis(-turned) * normal))
+}
+
+/// What only an arm that errs can explain. A rigid placement takes in what it can of that.
+fn error_of_the_arm(noise_m: f64) -> Option<String> {
+    (noise_m > ARM_ERROR_M).then(|| {
+        format!(
+            "the touches disagree by {:.1} mm per axis, which is more than a fingertip's: the arm itself errs, and \
+             the placement is the best compromise over the touched places",
+            noise_m * 1e3
+        )
+    })
 }
 
 /// Standard deviations of a shift of the middle (m) and of a turn about it (rad), from the places

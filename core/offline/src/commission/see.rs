@@ -51,7 +51,7 @@ impl Seer {
     /// The middle of the surest object of a class, by name; `None` where none was found by both eyes.
     fn find(&mut self, robot: &mut Robot, class: &str) -> Result<Option<Found>, CommissionError> {
         let sight: Sight = robot.look()?;
-        let seen = SeenUnder { t_secs: Some(robot.on_s()), background_m: None };
+        let seen = SeenUnder { t_secs: Some(robot.on_s()), ..SeenUnder::default() };
         let thing = Thing::of_class(class);
         let wanted = self.detector.info().names.index_of(thing.map_or(class, |thing| thing.class));
         let settings = DetectSettings::default();

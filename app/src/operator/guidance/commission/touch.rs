@@ -13,7 +13,7 @@ pub(super) fn placing(view: &View) -> Said {
     let touch = &view.touch;
     if let Some(place) = touch.placement_proposal.as_ref().filter(|_| !is_moving(view)) {
         return Said::press(
-            measured(place),
+            measured(place).1,
             "Use this place of the screen",
             vec![Action::Touch(TouchAction::AcceptScreen)],
         );

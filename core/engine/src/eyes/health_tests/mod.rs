@@ -167,15 +167,17 @@ impl Desk {
 
     /// A minute passes, a pair a second, and what is judged ends; how often that was.
     fn minute(&mut self, images: &[Arc<RgbImage>; 2]) -> usize {
-        let mut judged = 0;
-        for _ in 0..60 {
-            self.see(images.clone());
-            if matches!(self.started.last(), Some((_, EyesWork::Health(_)))) {
-                self.end_judging();
-                judged += 1;
-            }
+        (0..60).filter(|_| self.second(images)).count()
+    }
+
+    /// Sees for a second; whether something was judged.
+    fn second(&mut self, images: &[Arc<RgbImage>; 2]) -> bool {
+        self.see(images.clone());
+        let is_judged = matches!(self.started.last(), Some((_, EyesWork::Health(_))));
+        if is_judged {
+            self.end_judging();
         }
-        judged
+        is_judged
     }
 
     /// The source has something new.
@@ -474,12 +476,14 @@ fn a_proposal_is_judged_by_itself_but_not_while_the_arm_moves() {
 #[test]
 fn a_calibration_that_does_not_hold_is_told_once() {
     let mut desk = Desk::new(0.6);
-    assert_eq!(desk.minute(&seen()), 1);
+    let seconds_to_next = |desk: &mut Desk| (1..3600).find(|_| desk.second(&seen())).expect("judged");
+    seconds_to_next(&mut desk);
     assert_eq!(desk.said(), Vec::<String>::new(), "once may be a hand before an eye");
-    // Its pace is that of this machine: no more than a small share of it.
-    let minutes = (1..60).take_while(|_| desk.minute(&seen()) == 0).count() + 1;
-    assert!(minutes >= 2, "it rests for two minutes at least");
+    let soon_s = seconds_to_next(&mut desk);
+    assert!((15..=30).contains(&soon_s), "and is looked at again soon: {soon_s} s");
     let said = desk.said();
+    // Its pace is that of this machine: no more than a small share of it.
+    assert!(seconds_to_next(&mut desk) >= 120, "from then on it rests for two minutes at least");
     let [words] = &said[..] else { panic!("{said:?}") };
     assert!(words.contains("does not hold any more") && words.contains("cm far"), "{words}");
     assert!(!desk.view().health.judged.as_ref().expect("judged").in_use.is_good);

@@ -39,6 +39,7 @@ pub struct LiveWorkflow {
     aimed_for: HeadPose,
     /// For how long the eyes have been on, s.
     eyes_on_s: Option<f64>,
+    apart_rad: f64,
     /// The robot as it is known.
     model: Arc<RobotModel>,
     calibration: Option<Arc<StereoCalibration>>,
@@ -76,6 +77,7 @@ impl Default for LiveWorkflow {
             head_before: None,
             aimed_for: HeadPose::default(),
             eyes_on_s: None,
+            apart_rad: 0.0,
             model: Arc::new(RobotModel::nominal(default_rig())),
             calibration: None,
             nominal: None,

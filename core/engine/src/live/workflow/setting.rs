@@ -69,6 +69,17 @@ impl LiveWorkflow {
         }
     }
 
+    /// How far the right eye was seen to have turned against the left one since they were calibrated, rad; 0: nobody has
+    /// seen that.
+    pub fn set_seen_apart(&mut self, apart_rad: f64) {
+        if apart_rad != self.apart_rad {
+            self.apart_rad = apart_rad;
+            if let Ok(setup) = &mut self.setup {
+                Arc::make_mut(setup).apart_rad = apart_rad;
+            }
+        }
+    }
+
     /// Takes over what is known of the robot; places rest on it from now on.
     pub fn set_model(&mut self, model: &Arc<RobotModel>) {
         if Arc::ptr_eq(&self.model, model) {
@@ -131,6 +142,7 @@ impl LiveWorkflow {
                             title: self.model.title().into(),
                             posture: self.posture(),
                             eyes_on_s: self.eyes_on_s,
+                            apart_rad: self.apart_rad,
                         })
                     })
                     .map_err(NoSetup::from)

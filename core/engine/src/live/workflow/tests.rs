@@ -38,4 +38,19 @@ fn eyes_that_turn_as_they_warm_up_are_undone_by_their_clock() {
     let [unknown, cold, warm] = [None, Some(0.0), Some(1200.0)].map(&mut place);
     assert!(cold.distance_m(&unknown) < 1e-9);
     assert!(warm.distance_m(&cold) > 0.01, "{warm:?} {cold:?}");
+    // Eyes that were seen to have turned move no place, but widen what is said of it.
+    let far = Point::new(0.0, 0.0, 0.5);
+    let mut place = |apart_rad: f64| {
+        live.set_seen_apart(apart_rad);
+        let setup = live.setup().expect("nominal lenses");
+        let place = setup.place(&far, &(Matrix3::identity() * 1e-8)).expect("a place");
+        (place, setup.wide_because())
+    };
+    let ((held, before), (turned, because)) = (place(0.0), place(0.02));
+    assert!(held.point.distance_m(&turned.point) < 1e-9);
+    let more_m = (turned.sigma_m().powi(2) - held.sigma_m().powi(2)).sqrt();
+    // z²/b of a turn: 0.5² / 0.0682 · 0.02.
+    assert!((0.05..0.1).contains(&more_m), "{more_m}");
+    assert!(because.is_some_and(|said| said.contains("does not hold any more")), "{because:?}");
+    assert!(!before.is_some_and(|said| said.contains("does not hold")), "{before:?}");
 }

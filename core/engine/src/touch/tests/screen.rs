@@ -138,6 +138,35 @@ fn what_made_room_on_the_screen_comes_back_when_no_hand_is_there_any_more() {
 }
 
 #[test]
+fn what_made_room_comes_back_once_a_run_is_over_and_goes_again_when_it_is_taken_up() {
+    let folder = folder();
+    let mut desk = Desk::new(folder.path());
+    let ends = |control: &RobotControl| matches!(control, RobotControl::Twin(TwinCommand::EndTouch));
+    let begins =
+        |control: &RobotControl| matches!(control, RobotControl::Twin(TwinCommand::PrepareTouch { .. }));
+    // Orders stay for the arm.
+    let count = |desk: &Desk| {
+        let of = |is: &dyn Fn(&RobotControl) -> bool| desk.controls.iter().filter(|one| is(one)).count();
+        [of(&begins), of(&ends)]
+    };
+    desk.start(grid(2, 1));
+    desk.step();
+    assert_eq!(count(&desk), [1, 0], "toys stay away as long as it is touched");
+    desk.touch_all();
+    desk.step();
+    assert_eq!(desk.view().phase, TouchPhase::Finished);
+    assert_eq!(count(&desk), [0, 1], "nobody has to close the run");
+    desk.controls.clear();
+    desk.apply(TouchCommand::Redo { number: 1 });
+    desk.apply(TouchCommand::Resume);
+    desk.step();
+    assert_eq!(count(&desk), [1, 0], "and goes before the finger comes again");
+    desk.touch_all();
+    desk.step();
+    assert_eq!(count(&desk), [0, 1]);
+}
+
+#[test]
 fn a_place_of_another_robot_is_not_used() {
     let folder = folder();
     let mut desk = Desk::new(folder.path());

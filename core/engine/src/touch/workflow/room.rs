@@ -11,9 +11,11 @@ use crate::robot::view::{MotionState, RobotView};
 use crate::twin::command::TwinCommand;
 
 impl TouchWorkflow {
-    /// Once a run was closed, and the arms rest where nothing is put beside or into a hand.
+    /// Once a run is over or was closed, and the arms rest where nothing is put beside or into a hand. A run that is taken
+    /// up again asks for room again (`Run::tell_twin`).
     pub(super) fn give_room_back(&mut self, around: &TouchAround, context: &mut Context<'_>) {
-        if !self.owes_room || self.starting.is_some() || self.run.is_some() {
+        let is_over = self.run.as_ref().is_none_or(|run| run.is_over() && run.left_to_put_back().is_none());
+        if !self.owes_room || self.starting.is_some() || !is_over {
             return;
         }
         // Without a connection nobody knows where the hands are.

@@ -132,6 +132,7 @@ impl TouchWorkflow {
         let text =
             format!("The run is finished: {} of {} targets touched.", touches.len(), run.plan.reachable());
         context.notices.add(NoticeLevel::Success, text);
+        self.owes_room |= source(&around.robot) == ContactSource::Twin;
         let purpose = run.plan.options.purpose;
         let finger = run.plan.options.finger;
         // M1 to M3 are learned with the right finger, and its touches place the screen.

@@ -29,7 +29,7 @@ impl TwinDesk {
         if !away.is_empty() {
             let names: Vec<&str> = away.iter().map(|(toy, _)| toy.name()).collect();
             let text = format!(
-                "Put away, so that the screen can be touched, and back where they stood once the run is closed and no hand is there: {}.",
+                "Put away, so that the screen can be touched, and back where they stood once the run is over and no hand is there: {}.",
                 names.join(", ")
             );
             self.notes.push((NoticeLevel::Info, text));
