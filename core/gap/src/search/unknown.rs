@@ -25,7 +25,10 @@ const FORMULA_SHARE: f64 = RIVAL_SHARE;
 /// A drag is right to this share of itself: no log holds the speeds of joints, and a finger bounces. Of how far a finger slid in
 /// the physics of the blind test, without noise and against where it touched first, its best formula left 0.31 to 0.47 (three
 /// servos, 20 to 80 ms).
-const DRAG_SHARE: f64 = 0.4;
+const DRAG_SHARE: f64 = 0.47;
+/// A log that is early is right to this share of itself: joints slow down on their way. Of such logs that physics left 0.04 to
+/// 0.18.
+const EARLY_SHARE: f64 = 0.2;
 /// Cells off by this, dirt, are no lack of fit.
 const TOLERATED_CELL: f64 = 0.2;
 
@@ -47,7 +50,8 @@ impl Evidence<'_> {
         let is_needed = of_library.is_none() && !has_family;
         let counts = |model: &&Model| match self.floor.source {
             FloorSource::Fitted => is_needed && self.has_rival(model) || self.closes_more(model, best),
-            _ => p_value < RIVAL_P && self.rival_does(model) > large,
+            // Where formulas err by no more than this, a rival only follows their error.
+            _ => p_value < RIVAL_P && left > of_formulas && self.rival_does(model) > large,
         };
         let rival: f64 = models.iter().filter(counts).map(|model| model.probability).sum();
         let softens: f64 = models
@@ -84,16 +88,22 @@ impl Evidence<'_> {
         model.set.iter().any(|&block| block >= self.look.effects)
     }
 
-    /// What formulas may leave of what they explain, in floors: a share of the gap, and more of a drag.
+    /// What formulas may leave of what they explain, in floors: a share of the gap, and more of a drag and of an early log.
     fn left_by_formulas(&self, set: Option<&Model>) -> f64 {
-        let of_drag = |model: &Model| {
+        let of_its_own = |model: &Model| {
             let set = self.of_library(model);
-            let place =
-                set.iter().position(|&block| self.look.blocks[block].kind == Some(Kind::TouchDrag))?;
-            let (own, _) = self.values(&set).into_iter().nth(place)?;
-            Some(DRAG_SHARE * self.look.does(set[place], &own))
+            let share = |&block: &usize| match self.look.blocks[block].kind {
+                Some(Kind::TouchDrag) => DRAG_SHARE,
+                Some(Kind::EarlyLog) => EARLY_SHARE,
+                _ => 0.0,
+            };
+            let values = self.values(&set);
+            let left = set.iter().zip(&values).map(|(block, (own, _))| (share(block), block, own));
+            left.filter(|(share, ..)| *share > 0.0)
+                .map(|(share, block, own)| share * self.look.does(*block, own))
+                .fold(0.0, f64::max)
         };
-        (FORMULA_SHARE * self.look.gap()).max(set.and_then(of_drag).unwrap_or(0.0))
+        (FORMULA_SHARE * self.look.gap()).max(set.map_or(0.0, of_its_own))
     }
 
     /// Whether a set has a joint that gives way the more the warmer it is, where the library's best set has both a joint that

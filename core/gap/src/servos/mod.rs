@@ -43,9 +43,13 @@ const KNOWN: f64 = 0.2;
 const FURTHEST: f64 = 0.3;
 /// Every joint lags a little behind while it moves; one that sticks does so by this many times more.
 const STANDS_OUT: f64 = 2.5;
-/// From one side and with one weight a servo lags by so many times what others do, always by nearly as much …
+/// From one side and with one weight a servo lags by so many times what others do, always by nearly as much; by this many
+/// where it is sure that the lag grows with the load …
 const MORE_FROM_ONE_SIDE: f64 = 3.0;
+const MORE_WHERE_IT_GROWS: f64 = 2.0;
 const LEFT_OVER: f64 = 0.5;
+/// What lags so many times as far need not be seen to grow.
+const FAR_MORE: f64 = 4.5;
 /// … and more with a larger load, by so many standard deviations. It is surely the load where what the lag
 /// grows by and what it is in proportion to the torque agree to this share.
 const HARDLY: f64 = 2.0;
@@ -198,10 +202,11 @@ impl<'a> Servos<'a> {
         let others = self.joints.iter().filter(|other| other.j != joint.j);
         let usual = median(others.map(|other| other.lag.rms_rad))?;
         let (lag, grows) = (&joint.lag, joint.lag.gives?);
-        let stands_out = lag.rms_rad > MORE_FROM_ONE_SIDE * usual && lag.sd_rad < LEFT_OVER * lag.rms_rad;
+        let more = if lag.surely_grows() { MORE_WHERE_IT_GROWS } else { MORE_FROM_ONE_SIDE };
+        let stands_out = lag.rms_rad > more * usual && lag.sd_rad < LEFT_OVER * lag.rms_rad;
         let slope = lag.of_load_slope();
         // What lags far more than the others need not be seen to grow, only not to fall.
-        let far = lag.rms_rad > 2.0 * MORE_FROM_ONE_SIDE * usual;
+        let far = lag.rms_rad > FAR_MORE * usual;
         let grows = if far { grows.value > -HARDLY * grows.sd } else { grows.value > HARDLY * grows.sd };
         if !stands_out || !grows || slope.value <= 0.0 || slope.value > FURTHEST {
             return None;
@@ -272,12 +277,22 @@ impl Lag {
         grows.value > 0.5 * SURE * grows.sd && (grows.value - whole).abs() < AGREE * whole
     }
 
-    /// By how much it gives way, had it no offset. Two ways of looking at it that differ say how well that is
-    /// known, and so do masses that nobody weighed.
+    /// Whether it surely lags the more the larger the load.
+    fn surely_grows(&self) -> bool {
+        self.gives.is_some_and(|grows| grows.value > SURE * grows.sd)
+    }
+
+    /// By how much it gives way. Where that is seen well, by what it grows by: friction takes its part of the load from what
+    /// comes from one side. Else had it no offset, and two ways of looking at it that differ say how well that is known.
+    /// So do masses that nobody weighed.
     fn of_load_slope(&self) -> Slope {
+        let masses = |value: f64| self.mass_share * MASS_SD * value;
+        if let Some(grows) = self.gives.filter(|_| self.surely_grows()) {
+            return Slope { value: grows.value, sd: grows.sd.hypot(masses(grows.value)) };
+        }
         let Slope { value, sd } = self.in_proportion;
         let apart = self.gives.map_or(0.0, |grows| 0.5 * (grows.value - value));
-        Slope { value, sd: sd.hypot(apart).hypot(self.mass_share * MASS_SD * value) }
+        Slope { value, sd: sd.hypot(apart).hypot(masses(value)) }
     }
 }
 
@@ -304,10 +319,14 @@ mod tests {
 
     /// Cells from one side: what does not depend on the torque (rad), and what does (rad/N m).
     fn one_sided(constant: f64, gives: f64, seed: u64) -> Lag {
+        noisy(constant, gives, 1e-3, seed)
+    }
+
+    fn noisy(constant: f64, gives: f64, noise_rad: f64, seed: u64) -> Lag {
         let mut random = StdRng::seed_from_u64(seed);
         let cell = |_| {
             let torque: f64 = random.random_range(0.3..1.5);
-            let noise = 1e-3 * random.random_range(-1.7..1.7);
+            let noise = noise_rad * random.random_range(-1.7..1.7);
             let lag_rad = vec![gives * torque + constant + noise];
             Cell { lag_rad, back: vec![-0.5], torque_nm: vec![torque], of_links_nm: vec![] }
         };
@@ -328,9 +347,20 @@ mod tests {
 
     #[test]
     fn two_ways_that_differ_make_a_slope_less_sure() {
-        let lag = one_sided(0.01, 0.03, 1);
+        let lag = noisy(0.01, 0.03, 1e-2, 1);
         let slope = lag.of_load_slope();
-        assert!(slope.sd > 2.0 * lag.in_proportion.sd, "{slope:?}");
+        assert!(!lag.surely_grows() && slope.sd > 2.0 * lag.in_proportion.sd, "{slope:?}");
         assert!((slope.value - 0.03).abs() < 2.0 * slope.sd, "{slope:?}");
+    }
+
+    #[test]
+    fn where_it_is_seen_to_grow_friction_that_takes_its_part_of_the_load_does_not_make_a_servo_stiffer() {
+        for seed in 0..20 {
+            // Friction holds a third of the load from the one side that touches come from.
+            let lag = one_sided(-0.01, 0.03, seed);
+            let slope = lag.of_load_slope();
+            assert!(lag.surely_grows() && (slope.value - 0.03).abs() < 4.0 * slope.sd, "{slope:?}");
+            assert!(lag.in_proportion.value < 0.8 * slope.value, "in proportion it would seem stiffer");
+        }
     }
 }
