@@ -75,7 +75,10 @@ fn about(setup: &Setup) -> About {
     let in_use: Vec<String> = setup
         .in_use
         .iter()
-        .map(|now| format!("{}: {}. {} {}", now.subject, now.title, now.error, now.against))
+        .map(|now| {
+            let against = if now.against.is_empty() { String::new() } else { format!(" {}", now.against) };
+            format!("{}: {}. {}{against}", now.subject, now.title, now.error)
+        })
         .collect();
     About {
         title: format!("{} · {}", setup.title, setup.date),

@@ -118,7 +118,7 @@ pub fn figures(eyes: &EyesView) -> Table {
         row("stereo rms, px", &summary(|s| Some(s.rms_stereo_px), 1.0)),
         row("left rms, px", &summary(|s| Some(s.rms_left_px), 1.0)),
         row("right rms, px", &summary(|s| Some(s.rms_right_px), 1.0)),
-        row("epipolar, px", &summary(|s| Some(s.epipolar_px), 1.0)),
+        row("vertical error, px", &summary(|s| Some(s.epipolar_px), 1.0)),
         row("squares, mm", &summary(|s| Some(s.square_mean_m), 1e3)),
         row("squares, one standard deviation, mm", &summary(|s| Some(s.square_sd_m), 1e3)),
         row("baseline, mm", &|c, _| mm(Some(c.cameras.baseline_m()))),

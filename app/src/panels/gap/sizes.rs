@@ -89,11 +89,12 @@ fn below(ui: &mut Ui, rows: Vec<Row>) {
         for row in rows {
             ui.horizontal_wrapped(|ui| {
                 ui.spacing_mut().item_spacing = egui::vec2(space::S, 0.0);
-                for text in row {
-                    if !text.text().is_empty() {
-                        // As a whole: a text that is broken begins under what stands before it.
-                        ui.add(Label::new(text).extend());
-                    }
+                let [name, value, known] = row;
+                // Nothing stands before it, so it may be broken where it is long.
+                ui.add(Label::new(name).wrap());
+                for text in [value, known].into_iter().filter(|text| !text.text().is_empty()) {
+                    // As a whole: a text that is broken begins under what stands before it.
+                    ui.add(Label::new(text).extend());
                 }
             });
         }

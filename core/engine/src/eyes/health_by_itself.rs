@@ -86,6 +86,10 @@ impl EyesWorkflow {
             (by_itself.opened, by_itself.due) = (around.source.opened, Some(now + SETTLED));
             by_itself.bad = None;
         }
+        if around.is_watched || around.is_corrected || !is_live(&around.source) {
+            // What was seen before says nothing of what is corrected since, and watching says it itself.
+            self.health.by_itself.off = None;
+        }
         if !self.may_look(now) {
             return;
         }
@@ -100,10 +104,6 @@ impl EyesWorkflow {
         // Cold eyes do not see as they did when they were calibrated warm, and will again.
         let is_cold = self.to_be_warm_min(around, now).is_some();
         let is_needed = is_proposed || !(around.is_watched || around.is_corrected || is_cold);
-        if around.is_watched || around.is_corrected || !is_live(&around.source) {
-            // What was seen before says nothing of what is corrected since, and watching says it itself.
-            self.health.by_itself.off = None;
-        }
         if !sees_now || around.arm_moves || !is_needed {
             return self.put_off(now);
         }

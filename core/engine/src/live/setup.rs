@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use nalgebra::Matrix3;
+use plumbline_effects::robot_model::Turned;
 use plumbline_effects::{PlaceInRobot, RobotModel, SeenUnder};
 use plumbline_model::aim::DEFAULT_SIZE_PX;
 use plumbline_model::camera::ModelKind;
@@ -64,8 +65,13 @@ impl LiveSetup {
     /// measured with eyes about as warm as now, and says how well it is known.
     pub fn wide_because(&self) -> Option<&'static str> {
         let turned = self.model.turned_since(&self.seen_under());
-        let said = wide_because(self.model.unmeasured(), self.calibration.covariance.is_some(), turned);
-        said.map(|said| if self.apart_rad > 0.0 { SEEN_TURNED } else { said })
+        let unmeasured = self.model.unmeasured();
+        let seen = Turned { apart_rad: self.apart_rad, together_rad: 0.0 };
+        // What nobody measured is wider than what was seen to turn.
+        if seen.counts() && !unmeasured.mount && !unmeasured.lenses {
+            return Some(SEEN_TURNED);
+        }
+        wide_because(unmeasured, self.calibration.covariance.is_some(), turned)
     }
 
     /// Where the left eye is.

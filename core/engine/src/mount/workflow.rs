@@ -355,6 +355,8 @@ impl Workflow for MountWorkflow {
             MountCommand::Solve => self.solve(around, context),
             MountCommand::Accept => match self.proposal.clone() {
                 Some(mount) => {
+                    // From here on the mount itself is what is taken back.
+                    self.deleted.clear();
                     let (kept, shelf) = (self.kept.clone(), self.shelf.clone());
                     context.start(MountWork::Save { kept, shelf, mount });
                 }
@@ -362,10 +364,12 @@ impl Workflow for MountWorkflow {
             },
             MountCommand::Discard => self.proposal = None,
             MountCommand::UseEarlier { id } => {
+                self.deleted.clear();
                 let (kept, shelf) = (self.kept.clone(), self.shelf.clone());
                 context.start(MountWork::UseEarlier { id, shelf, kept, rig: around.rig.clone() });
             }
             MountCommand::UseNominal => {
+                self.deleted.clear();
                 context.start(MountWork::Forget { kept: self.kept.clone() });
             }
         }
@@ -379,8 +383,6 @@ impl Workflow for MountWorkflow {
             MountResult::Saved(mount) => {
                 self.proposal = self.proposal.take().filter(|proposal| !Arc::ptr_eq(proposal, &mount));
                 self.in_use = Some(mount);
-                // From here on the mount itself is what is taken back.
-                self.deleted.clear();
             }
             MountResult::Restored(mount) => self.in_use = mount,
             MountResult::Forgotten => self.in_use = None,

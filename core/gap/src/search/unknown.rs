@@ -11,6 +11,8 @@ use crate::finding::FloorSource;
 /// A rival counts as something unknown when it does this to the rows, and this share of all.
 const RIVAL_SIZE: f64 = 0.4;
 const RIVAL_SHARE: f64 = 0.15;
+/// One that does so many times what formulas may leave is none of their error.
+const RIVAL_FAR: f64 = 2.0;
 /// Where the noise is whatever the best model leaves, nothing says that the library leaves more than noise. There a rival
 /// counts when it closes this share of the gap (squares) that the library's best set leaves open, or as much as counts
 /// elsewhere against what it leaves itself.
@@ -50,8 +52,11 @@ impl Evidence<'_> {
         let is_needed = of_library.is_none() && !has_family;
         let counts = |model: &&Model| match self.floor.source {
             FloorSource::Fitted => is_needed && self.has_rival(model) || self.closes_more(model, best),
-            // Where formulas err by no more than this, a rival only follows their error.
-            _ => p_value < RIVAL_P && left > of_formulas && self.rival_does(model) > large,
+            // Where formulas err by no more than this, a rival that does little more only follows their error.
+            _ => {
+                let does = self.rival_does(model);
+                p_value < RIVAL_P && does > large && (left > of_formulas || does > RIVAL_FAR * large)
+            }
         };
         let rival: f64 = models.iter().filter(counts).map(|model| model.probability).sum();
         let softens: f64 = models

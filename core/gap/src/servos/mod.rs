@@ -208,7 +208,12 @@ impl<'a> Servos<'a> {
         // What lags far more than the others need not be seen to grow, only not to fall.
         let far = lag.rms_rad > FAR_MORE * usual;
         let grows = if far { grows.value > -HARDLY * grows.sd } else { grows.value > HARDLY * grows.sd };
-        if !stands_out || !grows || slope.value <= 0.0 || slope.value > FURTHEST {
+        if !stands_out
+            || !grows
+            || slope.value <= 0.0
+            || slope.value > FURTHEST
+            || all_give(slope, self.others_in_proportion(joint))
+        {
             return None;
         }
         let size = self.size(joint.j, |row| slope.value * self.torque_nm(row, joint.j));
@@ -217,6 +222,10 @@ impl<'a> Servos<'a> {
         }
         let found = named(self.arm, Kind::ServoDroop, joint.j, slope, &size)?;
         if lag.is_of_load() { Some(found) } else { or_friction(self.arm, joint.j, found) }
+    }
+
+    fn others_in_proportion(&self, joint: &Joint) -> impl Iterator<Item = Slope> {
+        self.joints.iter().filter(move |other| other.j != joint.j).map(|other| other.lag.in_proportion)
     }
 
     fn sticking(&self) -> Vec<NamedEffect> {
@@ -296,6 +305,17 @@ impl Lag {
     }
 }
 
+/// Whether from one side the others give way about as much, as servos without integral action do: the one that lags farther
+/// then only bears more.
+fn all_give(slope: Slope, others: impl Iterator<Item = Slope>) -> bool {
+    let known: Vec<f64> = others
+        .filter(|other| other.value > 0.0 && other.sd < KNOWN * slope.value)
+        .map(|other| other.value)
+        .collect();
+    let usual = median(known.iter().copied()).filter(|_| known.len() >= FEWEST_OTHERS);
+    usual.is_some_and(|usual| slope.value < MORE * usual)
+}
+
 /// What servos do all alike, in words: how far each gives way (rad/N m) and moves the tip by it (m).
 fn give_way(alike: &[(f64, f64)]) -> Option<String> {
     median(alike.iter().map(|(value, _)| *value)).map(|usual| {
@@ -343,6 +363,17 @@ mod tests {
             // One that lags as much wherever it is loaded is late, not soft.
             assert!(!one_sided(0.02, 0.0, seed).is_of_load());
         }
+    }
+
+    #[test]
+    fn one_that_bears_more_than_servos_as_soft_as_itself_has_no_fault() {
+        let slope = |value: f64| Slope { value, sd: 0.05 * value };
+        let alike = [0.028, 0.033, 0.03].map(slope);
+        assert!(all_give(slope(0.035), alike.into_iter()));
+        assert!(!all_give(slope(0.09), alike.into_iter()), "three times as soft");
+        // What hardly bears anything, or lags to the other side, says nothing of how soft servos are.
+        let untold = [Slope { value: 0.4, sd: 0.2 }, slope(-0.05), slope(0.03)];
+        assert!(!all_give(slope(0.035), untold.into_iter()));
     }
 
     #[test]

@@ -247,11 +247,27 @@ fn noise(sum_of_squares: f64, touches: usize) -> (f64, Vec<String>) {
     (noise_m, vec![remark])
 }
 
+/// So many standard deviations per axis.
+const FAR: f64 = 4.6;
+/// Half of all lengths of a normal vector of three components are shorter, in standard deviations per axis.
+const MIDDLE_OF_CHI: f64 = 1.538;
+
+/// The median of lengths, m.
+fn middle_m(residuals: &[Vector3<f64>]) -> f64 {
+    let mut lengths: Vec<f64> = residuals.iter().map(Vector3::norm).collect();
+    lengths.sort_by(f64::total_cmp);
+    lengths.get(lengths.len() / 2).copied().unwrap_or(0.0)
+}
+
 /// A sentence for every touch that lies far off.
 fn outlying(residuals: &[Vector3<f64>], noise_m: f64) -> Vec<String> {
-    // One touch in 10 000 is that far off by chance (chi², 3 degrees of freedom).
-    let limit_m = 4.6 * noise_m;
-    let far = residuals.iter().map(Vector3::norm).enumerate().filter(|(_, off_m)| *off_m > limit_m.min(0.01));
+    // One touch in 10 000 is that far off by chance (chi², 3 degrees of freedom). Where the arm errs, all may be off by a
+    // centimeter: there those count that lie far beyond the middle one.
+    let limit_m = match error_of_the_arm(noise_m) {
+        Some(_) => FAR * middle_m(residuals) / MIDDLE_OF_CHI,
+        None => FAR * noise_m,
+    };
+    let far = residuals.iter().map(Vector3::norm).enumerate().filter(|(_, off_m)| *off_m > limit_m);
     far.map(|(i, off_m)| {
         format!("touch {} lies {:.1} mm beside the placed screen: touch that place again", i + 1, off_m * 1e3)
     })

@@ -12,11 +12,10 @@ use crate::operator::{Action, CommissionAction, TouchAction, needs_window};
 pub(super) fn placing(view: &View) -> Said {
     let touch = &view.touch;
     if let Some(place) = touch.placement_proposal.as_ref().filter(|_| !is_moving(view)) {
-        return Said::press(
-            measured(place).1,
-            "Use this place of the screen",
-            vec![Action::Touch(TouchAction::AcceptScreen)],
-        );
+        let (good, said) = measured(place);
+        let accept = vec![Action::Touch(TouchAction::AcceptScreen)];
+        let said = Said::press(said, "Use this place of the screen", accept);
+        return if good { said } else { said.warn() };
     }
     let plan = Said::press(
         "The corners of the screen are touched to measure where it lies. Planning moves nothing.",

@@ -3,6 +3,7 @@
 use std::fs;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Duration;
 
 use plumbline_correction::{Method, TouchData, TrainOptions, train};
 use plumbline_model::touch_plan::{Finger, PlanOptions, Purpose, TouchArea};
@@ -102,6 +103,8 @@ fn the_left_finger_touches_what_it_reaches_and_its_session_says_so() {
     desk.models = vec![Arc::new(model.expect("trained"))];
     desk.controls.clear();
     desk.apply(TouchCommand::Close);
+    desk.step();
+    desk.wait(Duration::from_secs(2));
     let ends = |control: &RobotControl| matches!(control, RobotControl::Twin(TwinCommand::EndTouch));
     assert!(desk.controls.iter().any(ends), "toys that made room come back: {:?}", desk.controls);
     desk.apply(TouchCommand::CorrectWith(Some(Method::M1.into())));

@@ -1,6 +1,7 @@
 //! The screen: where it lies by the touches, on a block, and what had to make room on it.
 
 use std::fs;
+use std::time::Duration;
 
 use plumbline_model::touch_plan::{Pattern, PlanOptions};
 use plumbline_model::{Pixel, Session};
@@ -132,6 +133,8 @@ fn what_made_room_on_the_screen_comes_back_when_no_hand_is_there_any_more() {
     assert_eq!(ends(&mut desk), 0, "what is put under a finger that hovers meets it");
     desk.robot.measured = away;
     desk.step();
+    assert_eq!(ends(&mut desk), 0, "it may only pause between two ways");
+    desk.wait(Duration::from_secs(2));
     assert_eq!(ends(&mut desk), 1, "nobody has to ask again");
     desk.step();
     assert_eq!(ends(&mut desk), 0, "once");
@@ -154,6 +157,7 @@ fn what_made_room_comes_back_once_a_run_is_over_and_goes_again_when_it_is_taken_
     assert_eq!(count(&desk), [1, 0], "toys stay away as long as it is touched");
     desk.touch_all();
     desk.step();
+    desk.wait(Duration::from_secs(2));
     assert_eq!(desk.view().phase, TouchPhase::Finished);
     assert_eq!(count(&desk), [0, 1], "nobody has to close the run");
     desk.controls.clear();
@@ -163,6 +167,7 @@ fn what_made_room_comes_back_once_a_run_is_over_and_goes_again_when_it_is_taken_
     assert_eq!(count(&desk), [1, 0], "and goes before the finger comes again");
     desk.touch_all();
     desk.step();
+    desk.wait(Duration::from_secs(2));
     assert_eq!(count(&desk), [0, 1]);
 }
 

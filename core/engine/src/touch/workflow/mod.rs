@@ -8,6 +8,7 @@ mod running;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Instant;
 
 use plumbline_correction::CorrectionModel;
 use plumbline_effects::{RigModel, RobotModel};
@@ -72,6 +73,8 @@ pub struct TouchWorkflow {
     last_session: Option<PathBuf>,
     /// What made room on the twin's screen is to come back.
     owes_room: bool,
+    /// Since when the arms rest away from the screen.
+    free_since: Option<Instant>,
     pub(super) window: Option<ScreenWindow>,
     pub(super) last_contact: Option<ContactView>,
     /// What [`Self::screen`] gives.
@@ -242,6 +245,7 @@ impl Workflow for TouchWorkflow {
                 self.leave_run();
                 let run = self.run.insert(Run::begun(session, *stored));
                 run.tell_twin(&around.robot, context);
+                self.owes_room |= source(&around.robot) == ContactSource::Twin;
             }
             TouchResult::Opened { session, stored } if self.starting == Some(id) => {
                 self.starting = None;

@@ -1,5 +1,7 @@
 //! What made room on the twin's screen comes back when nobody touches it any more.
 
+use std::time::Duration;
+
 use plumbline_model::robot::Rig;
 use plumbline_model::session::Touchscreen;
 
@@ -10,6 +12,9 @@ use super::{TouchAround, TouchWorkflow, source};
 use crate::robot::view::{MotionState, RobotView};
 use crate::twin::command::TwinCommand;
 
+/// For so long the arms have rested before anything is put down.
+const RESTS_FOR: Duration = Duration::from_secs(1);
+
 impl TouchWorkflow {
     /// Once a run is over or was closed, and the arms rest where nothing is put beside or into a hand. A run that is taken
     /// up again asks for room again (`Run::tell_twin`).
@@ -19,12 +24,16 @@ impl TouchWorkflow {
             return;
         }
         // Without a connection nobody knows where the hands are.
-        if source(&around.robot) != ContactSource::Twin
-            || !is_free(&around.rig, &self.placed_screen(&around.rig), &around.robot)
-        {
+        let is_free = source(&around.robot) == ContactSource::Twin
+            && is_free(&around.rig, &self.placed_screen(&around.rig), &around.robot);
+        let now = context.time.instant;
+        let since = *self.free_since.get_or_insert(now);
+        self.free_since = is_free.then_some(since);
+        // Between two of its orders an arm rests for a moment, too.
+        if !is_free || now.saturating_duration_since(since) < RESTS_FOR {
             return;
         }
-        self.owes_room = false;
+        (self.owes_room, self.free_since) = (false, None);
         context.control(TwinCommand::EndTouch.into());
     }
 }

@@ -59,6 +59,7 @@ impl TouchWorkflow {
         }
         if prepares {
             run.tell_twin(&around.robot, context);
+            self.owes_room |= source(&around.robot) == ContactSource::Twin;
         }
         run.go_on(&now, context);
         Ok(())
@@ -132,7 +133,6 @@ impl TouchWorkflow {
         let text =
             format!("The run is finished: {} of {} targets touched.", touches.len(), run.plan.reachable());
         context.notices.add(NoticeLevel::Success, text);
-        self.owes_room |= source(&around.robot) == ContactSource::Twin;
         let purpose = run.plan.options.purpose;
         let finger = run.plan.options.finger;
         // M1 to M3 are learned with the right finger, and its touches place the screen.
