@@ -26,6 +26,7 @@ use plumbline_engine::View;
 use plumbline_engine::view::{CaptureHint, Connection, EyesView, Proposal, SourceStatus};
 use plumbline_widgets::format;
 
+use super::words::more_doubts;
 use super::{Action, CommissionAction, RobotAction, Screen, faults};
 use sentence::say;
 
@@ -291,11 +292,7 @@ pub struct Verdict {
 /// The verdict on a proposal.
 pub fn verdict(proposal: &Proposal) -> Verdict {
     if let Some(doubt) = proposal.doubts.first() {
-        let more = match proposal.doubts.len() - 1 {
-            0 => String::new(),
-            1 => " One more doubt is listed.".to_owned(),
-            n => format!(" {n} more doubts are listed."),
-        };
+        let more = more_doubts(proposal.doubts.len() - 1);
         return Verdict { good: false, sentence: format!("Do not accept: {doubt}{more}") };
     }
     let sentence = match &proposal.calibration.summary {

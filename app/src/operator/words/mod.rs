@@ -33,6 +33,15 @@ pub fn sentence(text: &str) -> String {
     format!("{begun}{end}")
 }
 
+/// That more doubts than the one that was said are listed, a sentence behind it; nothing where there are none.
+pub fn more_doubts(more: usize) -> String {
+    match more {
+        0 => String::new(),
+        1 => " One more doubt is listed.".to_owned(),
+        n => format!(" {n} more doubts are listed."),
+    }
+}
+
 /// What a source is called: the last parts of the paths.
 pub fn source_name(spec: &SourceSpec) -> String {
     let last = |path: &Path| path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();

@@ -3,7 +3,7 @@
 use plumbline_engine::view::MountSummary;
 use plumbline_widgets::format;
 
-use super::sentence;
+use super::{more_doubts, sentence};
 
 /// Of a normal distribution 95 % lie within so many standard deviations.
 const NORMAL_95: f64 = 1.96;
@@ -13,11 +13,7 @@ const NORMAL_95: f64 = 1.96;
 pub fn verdict(summary: &MountSummary) -> (bool, String) {
     let (doubts, held) = summary.doubts();
     if let [first, more @ ..] = doubts.as_slice() {
-        let more = match more.len() {
-            0 => String::new(),
-            1 => " One more doubt is listed.".to_owned(),
-            n => format!(" {n} more doubts are listed."),
-        };
+        let more = more_doubts(more.len());
         return (false, format!("Doubtful. {}{more}", sentence(first)));
     }
     let sd_rad = summary.turned_sd_rad.iter().fold(0.0_f64, |most, sd| most.max(*sd));

@@ -3,16 +3,12 @@
 use plumbline_model::touchscreen::ScreenPlacement;
 use plumbline_widgets::format;
 
-use super::sentence;
+use super::{more_doubts, sentence};
 
 /// Whether nothing speaks against it, and that as a sentence: "Good: …", or "Doubtful." and the first doubt.
 pub fn verdict(place: &ScreenPlacement) -> (bool, String) {
     if let [first, more @ ..] = place.doubts().as_slice() {
-        let more = match more.len() {
-            0 => String::new(),
-            1 => " One more doubt is listed.".to_owned(),
-            n => format!(" {n} more doubts are listed."),
-        };
+        let more = more_doubts(more.len());
         return (false, format!("Doubtful. {}{more}", sentence(first)));
     }
     let touches = format::count(place.touches, "touch");
@@ -63,6 +59,10 @@ mod tests {
         place.residuals_m.iter_mut().enumerate().for_each(|(i, left_m)| left_m[i % 3] += 7e-3);
         let (good, said) = verdict(&place);
         assert!(good && said.starts_with("Good enough to go on:") && said.contains("own error"), "{said}");
+        // In every direction at once, all by more than a centimeter: none of them slipped.
+        place.residuals_m.iter_mut().for_each(|left_m| *left_m = [7e-3, -6e-3, 6e-3]);
+        let (good, said) = verdict(&place);
+        assert!(good && said.starts_with("Good enough to go on:"), "{said}");
     }
 
     #[test]
