@@ -9,9 +9,9 @@ use nalgebra::Point3;
 use plumbline::{PlumblineWindow, Screen, WindowSettings};
 use plumbline_engine::view::{
     BetweenSteps, DetectView, GraspHand, GraspMethod, GraspPhase, GraspRun, GraspStep, GraspView, LampState,
-    MotionState, ObjectView, RobotView,
+    MotionState, ObjectView, RobotView, ToyView, TwinView,
 };
-use plumbline_engine::{Command, GraspCommand, GraspTarget, View};
+use plumbline_engine::{Command, GraspCommand, GraspTarget, HandStep, View};
 use plumbline_model::frame::Point;
 use plumbline_widgets::scene3d::SceneCamera;
 
@@ -81,6 +81,27 @@ fn who_can_hold_nothing_of_what_is_there_is_told_so_and_not_ready() {
     assert!(!says_ready(vec![hand()], "Nothing to grasp is seen."));
     let unplaced = ObjectView { place: banana().place, ..tomato() };
     assert!(!says_ready(vec![unplaced, banana()], "Seen, but not where on the table: tomato."));
+}
+
+#[test]
+fn toys_that_made_room_are_not_simply_missing() {
+    let twin = |made_room: &[&str]| {
+        let toys =
+            vec![ToyView { name: "tomato".to_owned(), place: None, radius_m: 0.03, rgb: [200, 40, 30] }];
+        let made_room = made_room.iter().map(|name| (*name).to_owned()).collect();
+        Arc::new(TwinView { running: true, toys, made_room, ..TwinView::default() })
+    };
+    let view = |made_room: &[&str]| View { twin: twin(made_room), ..with(GraspView::default()) };
+    let fake = Fake::over(view(&["tomato"]));
+    let mut window = on_grasp(&fake);
+    assert!(says(
+        &window,
+        "Tomato made room for touches and comes back once no hand is over the screen. The arm goes home."
+    ));
+    click(&mut window, "Bring the arm home");
+    assert_eq!(fake.take_sent(), [Command::from(GraspCommand::Hand(HandStep::Home))]);
+    // Put away by the operator: nothing moves for it.
+    assert!(!says(&on_grasp(&Fake::over(view(&[]))), "made room"));
 }
 
 #[test]

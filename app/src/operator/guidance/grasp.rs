@@ -8,7 +8,9 @@ use plumbline_widgets::format;
 
 use super::robot;
 use super::sentence::{Guidance, say};
-use crate::operator::words::grasp::{again, closed, go_on, held_now, holds, method, object_of, try_of};
+use crate::operator::words::grasp::{
+    again, closed, go_on, held_now, holds, made_room, method, object_of, try_of,
+};
 use crate::operator::words::trials::ask;
 use crate::operator::{Action, GraspAction, RobotAction, TrialsAction};
 
@@ -47,6 +49,10 @@ fn idle(view: &View) -> Guidance {
         } else {
             guidance
         };
+    }
+    if let Some(away) = made_room(&view.twin) {
+        let home = Action::Grasp(GraspAction::Hand(HandStep::Home));
+        return say(format!("{away} The arm goes home.")).then("Bring the arm home", home);
     }
     let by = grasp.method.map(method).unwrap_or_default();
     if let Some(plan) = &grasp.plan {

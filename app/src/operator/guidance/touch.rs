@@ -85,7 +85,7 @@ pub fn what_moves(plan: &PlanView) -> String {
         Finger::Left => ("left", "right"),
     };
     format!(
-        "The {moves} arm touches the glass {touches}, about {}; the head and the {stays} arm stay.",
+        "The {moves} arm touches the glass {touches}, about {}, and goes home; the head and the {stays} arm stay.",
         minutes(plan.duration)
     )
 }

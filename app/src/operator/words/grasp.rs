@@ -2,7 +2,7 @@
 
 use plumbline_engine::view::{
     AttemptView, BetweenSteps, GraspHand, GraspMethod, GraspOutcome, GraspRun, GraspStep, GraspView,
-    HandChoice, SinceHeld,
+    HandChoice, SinceHeld, TwinView,
 };
 use plumbline_widgets::format;
 
@@ -33,6 +33,18 @@ pub fn about_hand(choice: HandChoice) -> &'static str {
 /// What is grasped: "tomato", or "what is seen best".
 pub fn object_of(grasp: &GraspView) -> String {
     grasp.target.class.as_ref().map_or_else(|| "what is seen best".to_owned(), |class| class.to_lowercase())
+}
+
+/// Why no toy lies on the twin's table although none was put away by the operator; `None`: one does, or nobody's hand is
+/// the reason.
+pub fn made_room(twin: &TwinView) -> Option<String> {
+    let is_empty = twin.running && twin.toys.iter().all(|toy| toy.place.is_none());
+    let toys: Vec<&str> = twin.made_room.iter().map(String::as_str).collect();
+    (is_empty && !toys.is_empty()).then(|| {
+        let listed = super::capitalized(&plumbline_model::listed(&toys));
+        let come = if toys.len() == 1 { "comes" } else { "come" };
+        format!("{listed} made room for touches and {come} back once no hand is over the screen.")
+    })
 }
 
 /// A clause as a sentence.

@@ -7,6 +7,7 @@ use plumbline_engine::{GraspCommand, GraspTarget, View};
 use plumbline_widgets::scene3d::{self, Line, PickId, Picked, Scene, Scene3dResponse, Tint};
 
 use crate::operator::Screen;
+use crate::operator::words::grasp::made_room;
 use crate::panels::PanelContext;
 use crate::panels::objects::found;
 use crate::panels::objects::state::ObjectsPanels;
@@ -92,6 +93,9 @@ fn things(view: &View) -> Vec<SceneThing> {
 pub fn nothing_to_hold(view: &View) -> Option<String> {
     if !things(view).is_empty() {
         return None;
+    }
+    if let Some(away) = made_room(&view.twin) {
+        return Some(away);
     }
     let mut seen: Vec<&str> = found(view).iter().map(|object| object.name.as_str()).collect();
     seen.retain(|name| !name.ends_with("Hand"));

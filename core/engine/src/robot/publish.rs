@@ -248,6 +248,7 @@ impl TwinView {
             && self.board == other.board
             && self.board_tour == other.board_tour
             && self.board_places_left == other.board_places_left
+            && self.made_room == other.made_room
             && (self.warm_up_pace - other.warm_up_pace).abs() < f64::EPSILON
             && self.faults == other.faults
             && self.toys.len() == other.toys.len()

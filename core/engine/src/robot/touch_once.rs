@@ -43,7 +43,7 @@ impl Worker {
     }
 
     pub(super) fn begin_touch_with(&mut self, order: TouchOrder, source: Box<dyn TouchSource>, now: Instant) {
-        let told = (order.order, order.number);
+        let told = (order.order, Some(order.number));
         if let Err(reason) = self.may_touch(&order) {
             return self.touching.tell(told, not_begun(&reason));
         }
@@ -188,7 +188,7 @@ impl Worker {
     }
 
     fn went(&mut self, run: Run, step: Result<Step, Interrupted>) {
-        let told = (run.order().order, run.order().number);
+        let told = (run.order().order, Some(run.order().number));
         match step {
             Ok(Step::Same) => self.touching.run = Some(run),
             Ok(Step::Next) => {
@@ -208,7 +208,7 @@ impl Worker {
     }
 
     /// The arm holds where it is, and the run is told why.
-    fn broken_off(&mut self, told: (u64, usize), what: &str, reason: &Interrupted) {
+    fn broken_off(&mut self, told: (u64, Option<usize>), what: &str, reason: &Interrupted) {
         // Goals below the glass become where the finger is: the next move starts outside.
         let _ = self.arm().map(|arm| arm.hold());
         self.paths.as_described();

@@ -75,8 +75,8 @@ impl TouchOrder {
 /// finger is lowered nowhere.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WithdrawOrder {
-    /// Number of the planned touch that waits for it, from 1; 0: all are done.
-    pub number: usize,
+    /// Number of the planned touch that waits for it, from 1; `None`: all are done.
+    pub number: Option<usize>,
     /// Counts orders, those of touches among them.
     pub order: u64,
     /// Name of the tip that touches.
@@ -125,8 +125,8 @@ pub enum TouchStage {
 pub struct TouchNews {
     /// Which order.
     pub order: u64,
-    /// Number of the planned touch.
-    pub number: usize,
+    /// Number of the planned touch; `None` on a way that no touch waits for.
+    pub number: Option<usize>,
     /// Under way, or ended.
     pub state: TouchRun,
 }

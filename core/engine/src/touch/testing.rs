@@ -238,7 +238,7 @@ impl Desk {
 
     /// What the robot says of an order.
     pub fn say(&mut self, order: &TouchOrder, state: TouchRun) {
-        let news = TouchNews { order: order.order, number: order.number, state };
+        let news = TouchNews { order: order.order, number: Some(order.number), state };
         self.with(|workflow, around, context| workflow.news(news, around, context));
     }
 

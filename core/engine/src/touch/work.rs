@@ -149,8 +149,8 @@ pub struct AwayRequest {
     pub place: ScreenPlace,
     /// What touches.
     pub finger: Finger,
-    /// Number of the touch that waits for it; 0: all are done.
-    pub number: usize,
+    /// Number of the touch that waits for it; `None`: all are done.
+    pub number: Option<usize>,
     /// What the touch before was sent beside its place; robot axes, m.
     pub beside_m: Vector3<f64>,
     /// Where the arm stands.

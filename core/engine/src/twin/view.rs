@@ -24,6 +24,8 @@ pub struct TwinView {
     pub warm_up_pace: f64,
     /// Toys: name, and where it stands now (`None`: put away).
     pub toys: Vec<ToyView>,
+    /// Toys that made room for the hand at the screen, and come back once none is there.
+    pub made_room: Vec<String>,
     /// The chessboard, if it is out.
     pub board: Option<Pose<Robot, Board>>,
     /// Number of places that the board can be held at for calibrating the eyes.
@@ -55,6 +57,7 @@ impl Default for TwinView {
             eyes_on_s: 0.0,
             warm_up_pace: 1.0,
             toys: Vec::new(),
+            made_room: Vec::new(),
             board: None,
             board_places: 0,
             few_board_places: 0,

@@ -61,7 +61,7 @@ impl Touching {
     }
 
     /// Of an order, by its count and the number of its planned touch.
-    pub(super) fn tell(&mut self, (order, number): (u64, usize), state: TouchRun) {
+    pub(super) fn tell(&mut self, (order, number): (u64, Option<usize>), state: TouchRun) {
         self.news.push(TouchNews { order, number, state });
     }
 }

@@ -63,7 +63,7 @@ impl Run {
 
     /// Goes on by itself from now on.
     pub fn resume(&mut self) {
-        (self.misses, self.pause, self.is_away) = (0, false, false);
+        (self.misses, self.pause, self.is_away, self.stays) = (0, false, false, false);
         self.phase = if self.progress.finished { Phase::Finished } else { Phase::Working };
     }
 

@@ -1,9 +1,10 @@
 //! Before somebody reaches for the screen or the hand the arm goes away from the screen: what is put under the screen
-//! lifts it, and a finger that hovers over it would be pushed into it.
+//! lifts it, and a finger that hovers over it would be pushed into it. A run that is over leaves no hand over the glass:
+//! what is done next needs the place, or hides behind the hand.
 
 use std::sync::Arc;
 
-use plumbline_model::robot::{Arm, Rig};
+use plumbline_model::robot::{Arm, Posture, Rig};
 use plumbline_model::session::Touchscreen;
 
 use super::going::{next_order, speed};
@@ -21,13 +22,34 @@ impl Run {
     /// on the screen is taken to lie where it lay.
     pub(super) fn put_back(&mut self, now: &Now<'_>, context: &mut Context<'_>) {
         if self.progress.prepared == AS_IT_LIES {
-            return self.finish(now, context);
+            return self.leave(now, context);
         }
         if let Some(trouble) = &now.trouble {
             self.phase = Phase::Paused(Some(trouble.to_string()));
             return;
         }
-        self.prepare(AS_IT_LIES, 0, now, context);
+        self.prepare(AS_IT_LIES, None, now, context);
+    }
+
+    /// All is done: the arm goes home, as it was said, and the run is over. Where it cannot, the run is over all the same.
+    fn leave(&mut self, now: &Now<'_>, context: &mut Context<'_>) {
+        let stays = !self.was_sent || self.stays || self.is_away || self.is_clear_of(now.screen, now);
+        match now.robot.measured.clone() {
+            Some(from) if !stays && now.trouble.is_none() => self.go_away(None, from, now, context),
+            _ => self.finish(now, context),
+        }
+    }
+
+    /// All is touched and everything lies as it lay: only the way home is left.
+    pub(super) fn only_leaves(&self) -> bool {
+        self.next().is_none() && self.progress.prepared == AS_IT_LIES
+    }
+
+    /// The arm could not go home at the end, which is no reason to ask anybody.
+    pub(super) fn stays_there(&mut self, why: &str, context: &mut Context<'_>) {
+        self.stays = true;
+        let text = format!("All is touched; the arm stays where it is. {why}");
+        context.notices.add(NoticeLevel::Info, text);
     }
 
     /// The run is over, even where the screen still stands on its block or the weight still hangs at the hand.
@@ -51,11 +73,11 @@ impl Run {
         (!left.is_empty()).then(|| left.join(" and "))
     }
 
-    /// The block and the weight that a touch needs (`number`; 0: all are done) are asked for once the arm is away.
+    /// The block and the weight that a touch needs (`number`; `None`: all are done) are asked for once the arm is away.
     pub(super) fn prepare(
         &mut self,
         wanted: [f64; 2],
-        number: usize,
+        number: Option<usize>,
         now: &Now<'_>,
         context: &mut Context<'_>,
     ) {
@@ -74,6 +96,10 @@ impl Run {
             self.phase = Phase::Paused(Some(why.to_owned()));
             return;
         };
+        self.go_away(number, from, now, context);
+    }
+
+    fn go_away(&mut self, number: Option<usize>, from: Posture, now: &Now<'_>, context: &mut Context<'_>) {
         let screen = now.screen.raised(self.progress.prepared[0]);
         let request = AwayRequest {
             rig: Arc::new(Rig { touchscreen: screen, ..(**now.rig).clone() }),
@@ -120,11 +146,15 @@ impl Run {
             Ok(order) if wanted => {
                 self.touch = Some(UnderWay {
                     order: order.order,
-                    number: (order.number > 0).then_some(order.number),
+                    number: order.number,
                     stage: Some(TouchStage::Withdrawing),
                     at_end: AtEnd::Keep,
                 });
                 context.control(RobotControl::Withdraw(order));
+            }
+            Err(reason) if wanted && self.only_leaves() => {
+                self.stays_there(&reason.to_string(), context);
+                self.go_on(now, context);
             }
             Err(reason) if wanted => {
                 let text = format!(

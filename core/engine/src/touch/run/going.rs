@@ -37,7 +37,7 @@ impl Run {
             return;
         }
         if aim.preparation() != self.progress.prepared || self.is_hearsay {
-            return self.prepare(aim.preparation(), aim.touch.number, now, context);
+            return self.prepare(aim.preparation(), Some(aim.touch.number), now, context);
         }
         self.route(aim, now, context);
     }
@@ -131,7 +131,7 @@ impl Run {
             Ok(order) if wanted => {
                 let number = Some(number);
                 self.touch = Some(UnderWay { order: order.order, number, stage: None, at_end: AtEnd::Keep });
-                (self.is_away, self.beside_m) = (false, order.beside_m);
+                (self.is_away, self.was_sent, self.beside_m) = (false, true, order.beside_m);
                 context.control(RobotControl::Touch(order));
             }
             Err(reason) if wanted => {

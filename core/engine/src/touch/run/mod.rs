@@ -134,6 +134,10 @@ pub struct Run {
     beside_m: Vector3<f64>,
     /// The arm went away from the screen, and has not been sent back since.
     is_away: bool,
+    /// The arm was sent to the screen since the run was begun or opened.
+    was_sent: bool,
+    /// The arm could not go home at the end.
+    stays: bool,
     /// The screen stands on a block, or the hand carries a weight, by what the disk says: nobody has said so since the run
     /// was opened.
     is_hearsay: bool,
@@ -179,6 +183,8 @@ impl Run {
             contacts: vec![],
             planner: None,
             is_away: false,
+            was_sent: false,
+            stays: false,
             ends: false,
             ended: false,
         }

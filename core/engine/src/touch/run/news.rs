@@ -76,6 +76,9 @@ impl Run {
                 self.phase = Phase::Paused(Some(text));
                 self.held += 1;
             }
+            (TouchRun::Interrupted(why) | TouchRun::Unheard(why), None) if self.only_leaves() => {
+                self.stays_there(&why, context);
+            }
             (TouchRun::Interrupted(why) | TouchRun::Unheard(why), _) if at_end != AtEnd::Finish => {
                 self.interrupted(number, &why);
             }

@@ -6,7 +6,7 @@ use plumbline_model::touch_plan::{Pattern, PlanOptions};
 use super::{folder, paused};
 use crate::ground::notice::NoticeLevel;
 use crate::robot::view::MotionState;
-use crate::robot::{TouchOrder, TouchRun, WithdrawOrder};
+use crate::robot::{RobotControl, TouchOrder, TouchRun, WithdrawOrder};
 use crate::touch::command::TouchCommand;
 use crate::touch::testing::{Desk, grid, rig};
 use crate::touch::view::{TouchOutcome, TouchPhase};
@@ -106,7 +106,7 @@ fn the_arm_goes_home_before_the_screen_is_raised_under_it() {
 
     // It lies as it lay before the run is over: from then on it is taken to.
     let away = desk.withdrawal().expect("away once more");
-    assert_eq!(away.number, 0, "no touch waits for it");
+    assert_eq!(away.number, None, "no touch waits for it");
     desk.withdraw(&away);
     assert_eq!(waits_for(&desk), Some((0.0, 0.0)));
     assert!(desk.view().next.contains("back on the table"), "{}", desk.view().next);
@@ -250,7 +250,7 @@ fn a_run_that_is_stopped_at_its_end_on_a_block_pauses_and_is_not_over() {
     assert!(*raised == rig().touchscreen.raised(BLOCK_M));
     desk.robot.stopped = false;
     desk.apply(TouchCommand::Resume);
-    assert_eq!(desk.withdrawal().expect("then it goes away").number, 0);
+    assert_eq!(desk.withdrawal().expect("then it goes away").number, None);
 }
 
 #[test]
@@ -296,4 +296,41 @@ fn nobody_is_believed_while_an_arm_moves_or_is_not_known() {
     desk.apply(done(BLOCK_M));
     assert!(desk.said().contains("not known where the arm is"), "{}", desk.said());
     assert_eq!(waits_for(&desk), Some((BLOCK_M, 0.0)));
+}
+
+/// A run whose touches all lie as the screen lies, until it hovers over the glass after the last one.
+fn hovers_after_the_last(desk: &mut Desk) -> WithdrawOrder {
+    let patterns = vec![Pattern::Grid { columns: 2, rows: 1 }];
+    desk.start(PlanOptions { patterns, ..grid(2, 1) });
+    for _ in 0..2 {
+        let order = desk.order().expect("a touch");
+        desk.robot.measured = order.lower.first().cloned();
+        desk.touch(&order);
+    }
+    desk.withdrawal().unwrap_or_else(|| panic!("home at the end: {}", desk.said()))
+}
+
+#[test]
+fn a_run_that_is_done_leaves_no_hand_over_the_glass() {
+    let folder = folder();
+    let mut desk = Desk::new(folder.path());
+    let away = hovers_after_the_last(&mut desk);
+    assert_eq!(away.number, None);
+    assert!(matches!(desk.view().phase, TouchPhase::Running { .. }), "it is not over while the arm moves");
+    desk.withdraw(&away);
+    assert_eq!(desk.view().phase, TouchPhase::Finished);
+    assert!(desk.controls.iter().all(|control| !matches!(control, RobotControl::Withdraw(_))), "once");
+}
+
+#[test]
+fn a_run_is_over_although_the_arm_cannot_go_home() {
+    let folder = folder();
+    let mut desk = Desk::new(folder.path());
+    let away = hovers_after_the_last(&mut desk);
+    desk.say_away(&away, TouchRun::Interrupted("STOP is pressed.".to_owned()));
+    assert_eq!(desk.view().phase, TouchPhase::Finished, "all was touched");
+    assert!(
+        desk.notices.view().iter().any(|notice| notice.text.contains("stays where it is. STOP is pressed"))
+    );
+    assert!(desk.withdrawal().is_none());
 }

@@ -21,6 +21,7 @@ impl TwinDesk {
             board_places: self.board_places.len(),
             few_board_places: self.few_places.len(),
             board_tour: self.tours.view(),
+            made_room: self.off_screen.iter().map(|(toy, _)| toy.name().to_owned()).collect(),
             board_places_left: self.tours.left(),
             ..TwinView::default()
         };

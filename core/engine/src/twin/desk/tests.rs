@@ -48,7 +48,9 @@ fn toys_make_room_on_the_screen_and_come_back_when_nobody_touches_it_any_more() 
     // The next touch makes sure, perhaps before anything has moved.
     desk.free_screen(&rig);
     until(&desk, "room", &|desk| place(desk, Toy::Tomato).is_none());
+    assert!(desk.view().made_room.contains(&"tomato".to_owned()));
     desk.control(TwinCommand::EndTouch, &rig).expect("as asked");
+    assert!(desk.view().made_room.is_empty());
     until(&desk, "the tomato is back", &|desk| {
         place(desk, Toy::Tomato).is_some_and(|at| (at.x - stood.x).hypot(at.y - stood.y) < 0.03)
     });

@@ -21,7 +21,7 @@ fn hovering() -> (Bench, WithdrawOrder) {
     let beside_m = bench.order.beside_m;
     let way = planner(&bench).away(&hovers, beside_m).expect("a free way");
     let tip = bench.order.tip.clone();
-    (bench, WithdrawOrder { number: 8, order: 2, tip, way, beside_m, speed_rad_s: 0.6 })
+    (bench, WithdrawOrder { number: Some(8), order: 2, tip, way, beside_m, speed_rad_s: 0.6 })
 }
 
 fn begin(bench: &mut Bench, order: &WithdrawOrder) {
@@ -33,7 +33,7 @@ fn told(bench: &mut Bench) -> Vec<TouchRun> {
     let mut told = vec![];
     for _ in 0..50 {
         for news in bench.worker.take_touch_news() {
-            assert_eq!((news.order, news.number), (2, 8));
+            assert_eq!((news.order, news.number), (2, Some(8)));
             told.push(news.state);
         }
         bench.pass();

@@ -280,7 +280,7 @@ impl Bench {
     pub fn collect(&mut self) -> Option<TouchRun> {
         let mut end = None;
         for news in self.worker.take_touch_news() {
-            assert_eq!((news.order, news.number), (self.order.order, self.order.number));
+            assert_eq!((news.order, news.number), (self.order.order, Some(self.order.number)));
             match news.state {
                 TouchRun::Doing(stage) => self.stages.push(stage),
                 state => {
