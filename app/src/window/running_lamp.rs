@@ -200,7 +200,7 @@ mod tests {
     #[test]
     fn what_is_under_way_says_how_far_it_is_and_leads_to_its_screen() {
         assert_eq!(told(&View::default()), None);
-        let running = TouchPhase::Running { number: 14, doing: "settling".to_owned() };
+        let running = TouchPhase::Running { number: Some(14), doing: "settling".to_owned() };
         let touching = touching(running);
         assert_eq!(told(&touching), Some(("Touch", "12 of 80".to_owned(), Screen::Touch)));
         let tour = Some(MountTour { pose: 3, of: 8, waits: false });

@@ -239,7 +239,7 @@ fn touches_are_planned_begun_and_waited_for() {
     assert!(matches!(sent[..], [Command::Touch(TouchCommand::CorrectWith(None)), Command::Touch(_)]));
 
     let touch = Arc::make_mut(&mut view.touch);
-    touch.phase = TouchPhase::Running { number: 3, doing: "above target 3".to_owned() };
+    touch.phase = TouchPhase::Running { number: Some(3), doing: "above target 3".to_owned() };
     touch.counts.touched = 2;
     let mut window = Fake::over(view).window(on(Screen::Touch));
     assert!(!says(&window, "Next: ") && says(&window, "2 of "));

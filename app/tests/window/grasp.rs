@@ -8,10 +8,10 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use nalgebra::Point3;
 use plumbline::{PlumblineWindow, Screen, WindowSettings};
 use plumbline_engine::view::{
-    BetweenSteps, DetectView, GraspHand, GraspMethod, GraspPhase, GraspRun, GraspStep, GraspView, LampState,
-    MotionState, ObjectView, RobotView, ToyView, TwinView,
+    BetweenSteps, Connection, DetectView, GraspHand, GraspMethod, GraspPhase, GraspRun, GraspStep, GraspView,
+    LampState, MotionState, ObjectView, RobotView, TouchPhase, TouchView, ToyView, TwinView,
 };
-use plumbline_engine::{Command, GraspCommand, GraspTarget, HandStep, View};
+use plumbline_engine::{Command, GraspCommand, GraspTarget, View};
 use plumbline_model::frame::Point;
 use plumbline_widgets::scene3d::SceneCamera;
 
@@ -92,14 +92,21 @@ fn toys_that_made_room_are_not_simply_missing() {
         Arc::new(TwinView { running: true, toys, made_room, ..TwinView::default() })
     };
     let view = |made_room: &[&str]| View { twin: twin(made_room), ..with(GraspView::default()) };
-    let fake = Fake::over(view(&["tomato"]));
-    let mut window = on_grasp(&fake);
-    assert!(says(
-        &window,
-        "Tomato made room for touches and comes back once no hand is over the screen. The arm goes home."
-    ));
-    click(&mut window, "Bring the arm home");
-    assert_eq!(fake.take_sent(), [Command::from(GraspCommand::Hand(HandStep::Home))]);
+    let room =
+        "Tomato made room for touches and comes back once no hand is over the screen. Bring the arm home.";
+    let mut window = on_grasp(&Fake::over(view(&["tomato"])));
+    assert!(says(&window, room));
+    click(&mut window, "Go to Robot");
+    assert!(shows(&window, "Poses") && !shows(&window, room));
+    // A run that is only paused keeps its room.
+    let touch = TouchView { phase: TouchPhase::Paused { why: None }, ..TouchView::default() };
+    let paused = View { touch: Arc::new(touch), ..view(&["tomato"]) };
+    let window = on_grasp(&Fake::over(paused));
+    assert!(says(&window, "comes back once the run of touches is over.") && shows(&window, "Go to Touch"));
+    // Another robot has other things before it.
+    let real = || Connection::Connected { to: "USB0".to_owned(), twin: false };
+    let real = View { robot: Arc::new(RobotView { connection: real(), ..connected() }), ..view(&["tomato"]) };
+    assert!(!says(&on_grasp(&Fake::over(real)), "made room"));
     // Put away by the operator: nothing moves for it.
     assert!(!says(&on_grasp(&Fake::over(view(&[]))), "made room"));
 }

@@ -172,7 +172,8 @@ pub fn running() -> TouchView {
     let view = after(30, TouchPhase::Finished);
     let number = next_number(&view);
     let contact = ContactView { pixel: Pixel::new(900.0, 500.0), number: 27, is_down: false };
-    let phase = TouchPhase::Running { number, doing: format!("settling above target {number}") };
+    let phase =
+        TouchPhase::Running { number: Some(number), doing: format!("settling above target {number}") };
     TouchView { phase, last_contact: Some(contact), ..view }
 }
 

@@ -167,8 +167,10 @@ fn a_held_jog_key_is_renewed_and_released_at_once() {
 
 #[test]
 fn an_arm_that_a_run_moves_is_not_jogged_and_the_pad_says_why() {
-    let touch =
-        TouchView { phase: TouchPhase::Running { number: 3, doing: String::new() }, ..TouchView::default() };
+    let touch = TouchView {
+        phase: TouchPhase::Running { number: Some(3), doing: String::new() },
+        ..TouchView::default()
+    };
     let fake = Fake::over(View { touch: Arc::new(touch), ..everything() });
     let window = fake.window(on_robot());
     assert!(says(&window, "touches move the arm: pause them first"));

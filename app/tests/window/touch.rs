@@ -384,7 +384,7 @@ fn pictures_of_touching() {
     let what = "Raise the screen by 30 mm: put the block under it, then go on.".to_owned();
     let waiting = after(12, TouchPhase::Waiting { what, prepare: Some((0.03, 0.0)) });
     let doing = "going home, away from the screen".to_owned();
-    let withdrawing = after(12, TouchPhase::Running { number: next_number(&waiting), doing });
+    let withdrawing = after(12, TouchPhase::Running { number: Some(next_number(&waiting)), doing });
     let back =
         "Put the screen back on the table and take the weight off the hand, then say that it is done; nothing moves any more."
             .to_owned();

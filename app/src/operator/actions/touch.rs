@@ -180,6 +180,9 @@ impl TouchAction {
             Self::Pause => {
                 when(matches!(touch.phase, TouchPhase::Running { .. }), "nothing is being touched")
             }
+            Self::Skip if matches!(touch.phase, TouchPhase::Running { number: None, .. }) => {
+                Some("no touch is left".into())
+            }
             Self::Skip | Self::Finish => when(is_under_way(&touch.phase), "no run is under way"),
             Self::Prepared => when(
                 matches!(touch.phase, TouchPhase::Waiting { prepare: Some(_), .. }),

@@ -12,7 +12,7 @@ use crate::operator::words::grasp::{
     again, closed, go_on, held_now, holds, made_room, method, object_of, try_of,
 };
 use crate::operator::words::trials::ask;
-use crate::operator::{Action, GraspAction, RobotAction, TrialsAction};
+use crate::operator::{Action, GraspAction, RobotAction, Screen, TrialsAction, is_under_way};
 
 pub(super) fn grasp(view: &View) -> Guidance {
     let grasp = &view.grasp;
@@ -50,9 +50,13 @@ fn idle(view: &View) -> Guidance {
             guidance
         };
     }
-    if let Some(away) = made_room(&view.twin) {
-        let home = Action::Grasp(GraspAction::Hand(HandStep::Home));
-        return say(format!("{away} The arm goes home.")).then("Bring the arm home", home);
+    if let Some(away) = made_room(view) {
+        return match is_under_way(&view.touch.phase) {
+            true => say(away).then("Go to Touch", Action::Go(Screen::Touch)),
+            false => {
+                say(format!("{away} Bring the arm home.")).then("Go to Robot", Action::Go(Screen::Robot))
+            }
+        };
     }
     let by = grasp.method.map(method).unwrap_or_default();
     if let Some(plan) = &grasp.plan {

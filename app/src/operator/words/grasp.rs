@@ -1,10 +1,13 @@
 //! A grasp in words.
 
+use plumbline_engine::View;
 use plumbline_engine::view::{
-    AttemptView, BetweenSteps, GraspHand, GraspMethod, GraspOutcome, GraspRun, GraspStep, GraspView,
-    HandChoice, SinceHeld, TwinView,
+    AttemptView, BetweenSteps, Connection, GraspHand, GraspMethod, GraspOutcome, GraspRun, GraspStep,
+    GraspView, HandChoice, SinceHeld,
 };
 use plumbline_widgets::format;
+
+use crate::operator::is_under_way;
 
 /// "M5".
 pub fn method(method: GraspMethod) -> String {
@@ -35,15 +38,21 @@ pub fn object_of(grasp: &GraspView) -> String {
     grasp.target.class.as_ref().map_or_else(|| "what is seen best".to_owned(), |class| class.to_lowercase())
 }
 
-/// Why no toy lies on the twin's table although none was put away by the operator; `None`: one does, or nobody's hand is
-/// the reason.
-pub fn made_room(twin: &TwinView) -> Option<String> {
-    let is_empty = twin.running && twin.toys.iter().all(|toy| toy.place.is_none());
+/// Why no toy lies on the twin's table although none was put away by the operator, and when they come back; `None`: one
+/// does, or touches are not the reason, or the robot is not the twin.
+pub fn made_room(view: &View) -> Option<String> {
+    let twin = &view.twin;
+    let is_there = twin.running && matches!(view.robot.connection, Connection::Connected { twin: true, .. });
+    let is_empty = is_there && twin.toys.iter().all(|toy| toy.place.is_none());
     let toys: Vec<&str> = twin.made_room.iter().map(String::as_str).collect();
     (is_empty && !toys.is_empty()).then(|| {
         let listed = super::capitalized(&plumbline_model::listed(&toys));
         let come = if toys.len() == 1 { "comes" } else { "come" };
-        format!("{listed} made room for touches and {come} back once no hand is over the screen.")
+        let when = match is_under_way(&view.touch.phase) {
+            true => "the run of touches is over",
+            false => "no hand is over the screen",
+        };
+        format!("{listed} made room for touches and {come} back once {when}.")
     })
 }
 

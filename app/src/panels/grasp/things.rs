@@ -94,7 +94,7 @@ pub fn nothing_to_hold(view: &View) -> Option<String> {
     if !things(view).is_empty() {
         return None;
     }
-    if let Some(away) = made_room(&view.twin) {
+    if let Some(away) = made_room(view) {
         return Some(away);
     }
     let mut seen: Vec<&str> = found(view).iter().map(|object| object.name.as_str()).collect();

@@ -22,7 +22,7 @@ pub fn ghost<'a>(cx: &'a PanelContext<'_>) -> Option<&'a Posture> {
 /// The touch that is under way, else the next one, by number.
 pub fn next_touch(touch: &TouchView) -> Option<usize> {
     if let TouchPhase::Running { number, .. } = touch.phase {
-        return Some(number);
+        return number;
     }
     waiting_touch(touch)
 }

@@ -64,7 +64,10 @@ fn head(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         }
         TouchPhase::Running { number, doing } => {
             progress(ui, touch);
-            ui.label(format!("Touch {number}: {doing}"));
+            ui.label(match number {
+                Some(number) => format!("Touch {number}: {doing}"),
+                None => format!("No touch is left: {doing}"),
+            });
             ui.horizontal(|ui| {
                 action_button(ui, cx, TouchAction::Pause, "Pause");
                 action_button(ui, cx, TouchAction::Skip, "Skip");

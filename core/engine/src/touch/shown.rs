@@ -8,7 +8,7 @@ use plumbline_model::touch_plan::{Finger, Purpose};
 use super::figures::{error_m, figures};
 use super::plan::Aim;
 use super::record::Fate;
-use super::run::{Phase, Run, Task};
+use super::run::{Phase, Run, Task, UnderWay};
 use super::seen::Seen;
 use super::view::{
     ContactSource, TouchCounts, TouchFigures, TouchOutcome, TouchPhase, TouchState, TouchView,
@@ -258,28 +258,17 @@ impl TouchWorkflow {
 
 fn running(run: &Run) -> TouchPhase {
     let (number, doing) = match (&run.touch, run.task()) {
-        (Some(touch), _) => {
-            let number = touch.number.unwrap_or_else(|| last(run));
-            (
-                number,
-                match touch.stage {
-                    None | Some(TouchStage::Approaching) => format!("moving above target {number}"),
-                    Some(TouchStage::Settling) => format!("settling above target {number}"),
-                    Some(TouchStage::Lowering) => format!("lowering to target {number}"),
-                    Some(TouchStage::Dwelling) => format!("resting on target {number}"),
-                    Some(TouchStage::Retreating) => format!("going up from target {number}"),
-                    Some(TouchStage::Withdrawing) => "going home, away from the screen".to_owned(),
-                },
-            )
+        (Some(touch), _) => (touch.number, stage(touch)),
+        (None, Some(Task::Route(number))) => {
+            (Some(number), format!("looking for the way to target {number}"))
         }
-        (None, Some(Task::Route(number))) => (number, format!("looking for the way to target {number}")),
         (None, Some(Task::Away)) => {
-            let number = run.next().map_or_else(|| last(run), |aim| aim.touch.number);
+            let number = run.next().map(|aim| aim.touch.number);
             (number, "looking for the way home, away from the screen".to_owned())
         }
         (None, _) => {
             let number = run.unwritten.or_else(|| run.next().map(|aim| aim.touch.number)).unwrap_or(1);
-            (number, format!("writing touch {number} to disk"))
+            (Some(number), format!("writing touch {number} to disk"))
         }
     };
     let holds = run.pause || !matches!(run.phase, Phase::Working | Phase::Finished);
@@ -287,9 +276,17 @@ fn running(run: &Run) -> TouchPhase {
     TouchPhase::Running { number, doing }
 }
 
-/// Number of the last planned touch.
-fn last(run: &Run) -> usize {
-    run.plan.touches.last().map_or(1, |aim| aim.touch.number)
+/// What the arm does, after "The arm is".
+fn stage(touch: &UnderWay) -> String {
+    let target = touch.number.map_or_else(|| "the screen".to_owned(), |number| format!("target {number}"));
+    match touch.stage {
+        None | Some(TouchStage::Approaching) => format!("moving above {target}"),
+        Some(TouchStage::Settling) => format!("settling above {target}"),
+        Some(TouchStage::Lowering) => format!("lowering to {target}"),
+        Some(TouchStage::Dwelling) => format!("resting on {target}"),
+        Some(TouchStage::Retreating) => format!("going up from {target}"),
+        Some(TouchStage::Withdrawing) => "going home, away from the screen".to_owned(),
+    }
 }
 
 /// What has to be done by hand, and what comes then; a sentence.

@@ -94,8 +94,8 @@ pub enum TouchPhase {
     },
     /// Touches; the number of the planned touch and what the arm does just now.
     Running {
-        /// From 1.
-        number: usize,
+        /// From 1; `None` on the way home, where no touch waits for it.
+        number: Option<usize>,
         /// "settling above target 35", for people.
         doing: String,
     },

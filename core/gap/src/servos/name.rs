@@ -9,6 +9,8 @@ use crate::finding::{ClassMember, FoundParameter, NamedEffect};
 
 /// How sure a name is that all of this speaks for.
 const PROBABILITY: f64 = 0.97;
+/// What other servos of a robot may do as well is less sure.
+const PROBABILITY_OF_MORE: f64 = 0.8;
 /// A mass is told from those of other links less surely.
 const PROBABILITY_OF_MASS: f64 = 0.9;
 
@@ -24,6 +26,11 @@ pub(super) struct Size {
 pub(super) fn named(arm: &Arm, kind: Kind, joint: usize, slope: Slope, size: &Size) -> Option<NamedEffect> {
     let effect = Effect::find(kind.id(), &arm.parts[joint].joint, None, Some(arm), None)?;
     Some(of_effect(&effect, slope, size, PROBABILITY))
+}
+
+/// The same where it stands out by no more than servos of a robot may differ.
+pub(super) fn hardly(found: NamedEffect) -> NamedEffect {
+    NamedEffect { probability: PROBABILITY_OF_MORE, class_probability: PROBABILITY_OF_MORE, ..found }
 }
 
 /// The same where friction could do as much.

@@ -14,7 +14,8 @@ const RIDGE: f64 = 1e-9;
 
 /// How rows change with every joint.
 pub(super) struct Levers<'a> {
-    rows: Vec<&'a Observation>,
+    /// Rows that are asked.
+    pub rows: Vec<&'a Observation>,
     /// One column per frame direction, whitened.
     frames: DMatrix<f64>,
     /// Per joint: whitened change of every line per radian.

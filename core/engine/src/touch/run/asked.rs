@@ -23,6 +23,10 @@ impl Run {
 
     /// Breaks the touch under way off, which is made again later.
     pub fn break_off(&mut self, why: String, context: &mut Context<'_>) {
+        // The way home needs nothing that feels contacts.
+        if self.only_leaves() {
+            return;
+        }
         if let Some(touch) = &mut self.touch {
             touch.at_end = AtEnd::Retry;
             context.control(RobotControl::AbandonTouch);
@@ -98,6 +102,8 @@ impl Run {
         }
         self.may_be_prepared(preparation, now)?;
         (self.progress.prepared, self.is_hearsay) = (preparation, false);
+        // It was said that nothing moves any more, and hands are at the screen.
+        self.stays |= self.next().is_none();
         self.changed();
         if let Phase::Preparing(_) = self.phase {
             self.phase = Phase::Working;

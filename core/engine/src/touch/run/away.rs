@@ -35,21 +35,23 @@ impl Run {
     fn leave(&mut self, now: &Now<'_>, context: &mut Context<'_>) {
         let stays = !self.was_sent || self.stays || self.is_away || self.is_clear_of(now.screen, now);
         match now.robot.measured.clone() {
-            Some(from) if !stays && now.trouble.is_none() => self.go_away(None, from, now, context),
-            _ => self.finish(now, context),
+            Some(from) if !stays && now.trouble.is_none() => return self.go_away(None, from, now, context),
+            _ if !stays => self.stays_there(context),
+            _ => {}
         }
+        self.finish(now, context);
     }
 
-    /// All is touched and everything lies as it lay: only the way home is left.
+    /// No touch is left and everything lies as it lay: only the way home is.
     pub(super) fn only_leaves(&self) -> bool {
         self.next().is_none() && self.progress.prepared == AS_IT_LIES
     }
 
-    /// The arm could not go home at the end, which is no reason to ask anybody.
-    pub(super) fn stays_there(&mut self, why: &str, context: &mut Context<'_>) {
+    /// The arm could not go home at the end, which is no reason for the run to wait.
+    pub(super) fn stays_there(&mut self, context: &mut Context<'_>) {
         self.stays = true;
-        let text = format!("All is touched; the arm stays where it is. {why}");
-        context.notices.add(NoticeLevel::Info, text);
+        let text = "The run is over, but the arm could not go home and stays near the screen: bring it home (Robot) when its way is free.";
+        context.notices.add(NoticeLevel::Warning, text.to_owned());
     }
 
     /// The run is over, even where the screen still stands on its block or the weight still hangs at the hand.
@@ -152,8 +154,8 @@ impl Run {
                 });
                 context.control(RobotControl::Withdraw(order));
             }
-            Err(reason) if wanted && self.only_leaves() => {
-                self.stays_there(&reason.to_string(), context);
+            Err(_) if wanted && self.only_leaves() => {
+                self.stays_there(context);
                 self.go_on(now, context);
             }
             Err(reason) if wanted => {

@@ -27,7 +27,8 @@ impl Run {
         if self.phase != Phase::Working {
             return;
         }
-        if std::mem::take(&mut self.pause) {
+        let is_home = self.only_leaves() && (self.is_away || self.stays);
+        if std::mem::take(&mut self.pause) && !is_home {
             self.phase = Phase::Paused(None);
             return;
         }

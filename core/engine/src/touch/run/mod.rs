@@ -160,7 +160,7 @@ impl Run {
         let Stored { plan, progress, screen, joints } = stored;
         // The arm may still hover where the newest touch left it.
         let newest = progress.records.last().and_then(|record| plan.aim(record.number));
-        Self {
+        let mut run = Self {
             beside_m: newest.map_or_else(Vector3::zeros, |aim| aim.wanted().beside_m()),
             end_on_disk: progress.finished,
             is_hearsay: progress.prepared != AS_IT_LIES,
@@ -187,7 +187,12 @@ impl Run {
             stays: false,
             ends: false,
             ended: false,
+        };
+        // Broken off when nothing was left but to say so: it says so now.
+        if run.phase != Phase::Finished && run.only_leaves() {
+            run.phase = Phase::Working;
         }
+        run
     }
 
     /// Whether it is neither finished nor waits for the disk to say so.
@@ -257,8 +262,11 @@ impl Run {
         self.plan.touches.iter().filter(waits).count()
     }
 
-    /// Time that the rest takes at the pace so far; before there is one, as estimated.
+    /// Time that the rest takes at the pace so far; before there is one, as estimated. `None` where no touch is left.
     pub fn remaining(&self) -> Option<Duration> {
+        if self.left() == 0 {
+            return None;
+        }
         let newest = &self.contacts[self.contacts.len().saturating_sub(PACE_OF)..];
         let mut gaps: Vec<Duration> =
             newest.windows(2).map(|pair| pair[1].saturating_duration_since(pair[0])).collect();

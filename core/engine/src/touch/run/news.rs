@@ -76,8 +76,8 @@ impl Run {
                 self.phase = Phase::Paused(Some(text));
                 self.held += 1;
             }
-            (TouchRun::Interrupted(why) | TouchRun::Unheard(why), None) if self.only_leaves() => {
-                self.stays_there(&why, context);
+            (TouchRun::Interrupted(_) | TouchRun::Unheard(_), None) if self.only_leaves() => {
+                self.stays_there(context);
             }
             (TouchRun::Interrupted(why) | TouchRun::Unheard(why), _) if at_end != AtEnd::Finish => {
                 self.interrupted(number, &why);
@@ -152,6 +152,7 @@ impl Run {
 
     /// Looks whether a run that holds because joints were not heard goes on by itself.
     pub fn look_again(&mut self, now: &Now<'_>, context: &mut Context<'_>) {
+        let only_leaves = self.only_leaves();
         let Phase::Paused(why) = &mut self.phase else {
             self.patience.end();
             return;
@@ -164,6 +165,10 @@ impl Run {
                 let text = "The joints are heard again: the run goes on by itself.";
                 context.notices.add(NoticeLevel::Info, text.to_owned());
             }
+            Look::GivesUp(_) if only_leaves => {
+                self.phase = Phase::Working;
+                self.stays_there(context);
+            }
             Look::GivesUp(reason) => {
                 let before = why.take().unwrap_or_default();
                 *why = Some(format!("{before} It did not: {reason} Go on when the way is free."));
@@ -172,8 +177,11 @@ impl Run {
     }
 
     /// The robot is gone: no more is heard of the touch under way.
-    pub fn lost(&mut self, why: &str) {
+    pub fn lost(&mut self, why: &str, context: &mut Context<'_>) {
         let Some(touch) = self.touch.take() else { return };
+        if touch.number.is_none() && self.only_leaves() && self.phase == Phase::Working {
+            return self.stays_there(context);
+        }
         if let (AtEnd::Skip, Some(number)) = (touch.at_end, touch.number) {
             self.end(number, Ended::Skipped);
         }

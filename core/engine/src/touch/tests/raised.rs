@@ -5,10 +5,10 @@ use plumbline_model::touch_plan::{Pattern, PlanOptions};
 
 use super::{folder, paused};
 use crate::ground::notice::NoticeLevel;
-use crate::robot::view::MotionState;
+use crate::robot::view::{Connection, MotionState};
 use crate::robot::{RobotControl, TouchOrder, TouchRun, WithdrawOrder};
 use crate::touch::command::TouchCommand;
-use crate::touch::testing::{Desk, grid, rig};
+use crate::touch::testing::{Desk, grid, only_session, rig};
 use crate::touch::view::{TouchOutcome, TouchPhase};
 
 const BLOCK_M: f64 = 0.06;
@@ -328,9 +328,39 @@ fn a_run_is_over_although_the_arm_cannot_go_home() {
     let mut desk = Desk::new(folder.path());
     let away = hovers_after_the_last(&mut desk);
     desk.say_away(&away, TouchRun::Interrupted("STOP is pressed.".to_owned()));
-    assert_eq!(desk.view().phase, TouchPhase::Finished, "all was touched");
-    assert!(
-        desk.notices.view().iter().any(|notice| notice.text.contains("stays where it is. STOP is pressed"))
-    );
+    assert_eq!(desk.view().phase, TouchPhase::Finished, "no touch is left");
+    let said =
+        |desk: &mut Desk| desk.notices.view().iter().filter(|one| one.text.contains("stays near")).count();
+    assert_eq!(said(&mut desk), 1);
     assert!(desk.withdrawal().is_none());
+
+    // Or with the robot gone on the way.
+    let mut desk = Desk::new(self::folder().path());
+    hovers_after_the_last(&mut desk);
+    desk.robot.connection = Connection::None;
+    desk.step();
+    assert_eq!((desk.view().phase, said(&mut desk)), (TouchPhase::Finished, 1));
+}
+
+#[test]
+fn a_pause_on_the_way_home_leaves_nothing_to_go_on_with() {
+    let folder = folder();
+    let mut desk = Desk::new(folder.path());
+    let away = hovers_after_the_last(&mut desk);
+    assert!(matches!(desk.view().phase, TouchPhase::Running { number: None, .. }));
+    assert_eq!(desk.view().remaining, None);
+    desk.apply(TouchCommand::Pause);
+    desk.withdraw(&away);
+    assert_eq!(desk.view().phase, TouchPhase::Finished);
+}
+
+#[test]
+fn a_run_that_ended_on_the_way_home_is_over_when_it_is_opened_again() {
+    let folder = folder();
+    let mut desk = Desk::new(folder.path());
+    hovers_after_the_last(&mut desk);
+    let mut again = Desk::new(folder.path());
+    again.apply(TouchCommand::Open { session: only_session(folder.path()) });
+    assert_eq!(again.view().phase, TouchPhase::Finished, "{}", again.said());
+    assert!(again.withdrawal().is_none(), "nothing moves for it");
 }

@@ -35,7 +35,9 @@ fn a_run_from_the_plan_to_a_session_that_is_read_again() {
         // Every touch before this one is on disk.
         let session = only_session(folder.path());
         assert_eq!(if done == 0 { 0 } else { rows(&session) }, done);
-        assert!(matches!(desk.view().phase, TouchPhase::Running { number, .. } if number == order.number));
+        assert!(
+            matches!(desk.view().phase, TouchPhase::Running { number, .. } if number == Some(order.number))
+        );
         assert!(!order.lower.is_empty() && order.lower.len() == order.lower_tip.len());
         desk.touch(&order);
         done += 1;

@@ -88,6 +88,7 @@ impl TouchWorkflow {
         if run.touch.is_some() && !around.robot.connection.is_connected() {
             run.lost(
                 "The connection to the robot is gone. Connect again, look that the arm is free, then go on.",
+                context,
             );
         }
         let before = (run.phase.clone(), run.task());
