@@ -55,11 +55,14 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             }
             ui.add_space(space::S);
             chart(ui, cx, &facts);
-            figures(ui, &facts);
-            ui.add_space(space::S);
+            // What is decided stands at the picture that it is decided by, in small windows, too.
+            ui.add_space(space::XS);
             decide(ui, cx, &facts);
-            ui.add_space(space::S);
+            ui.add_space(space::XS);
             in_use(ui, cx);
+            ui.add_space(space::S);
+            about_chart(ui, &facts);
+            figures(ui, &facts);
             ui.add_space(space::S);
             files(ui, cx);
         });
@@ -120,11 +123,18 @@ fn chart(ui: &mut Ui, cx: &mut PanelContext<'_>, facts: &Facts) {
     if let Some(method) = clicked.and_then(|row| methods.get(row)) {
         cx.outbox.send(ModelsCommand::Show(*method));
     }
+}
+
+/// What the chart counts, and from where.
+fn about_chart(ui: &mut Ui, facts: &Facts) {
+    if facts.judged.is_empty() {
+        return;
+    }
     let words = "Mean distance in the plane at touches whose whole set was held out, with its 95 % interval. \
                  All of it, also without a model, is counted from where the arm was sent at the contact; Touch counts \
                  from the target.";
     ui.label(theme::small(ui, words));
-    if !levels.is_empty() {
+    if facts.noise.is_some() {
         ui.label(theme::small(ui, REPEATS_HELP));
     }
 }
