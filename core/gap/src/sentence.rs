@@ -1,6 +1,8 @@
 //! The answer in a sentence or two, for someone in the lab.
 
-use crate::finding::{ClassMember, Finding, FloorSource, FoundParameter, NamedEffect, ShownUnit, Verdict};
+use crate::finding::{
+    Candidate, ClassMember, Finding, FloorSource, FoundParameter, NamedEffect, ShownUnit, Verdict,
+};
 use crate::watched::WATCHED;
 use plumbline_model::{counted, number, parameter_units, parameter_words};
 
@@ -10,7 +12,8 @@ pub(crate) fn of(finding: &Finding) -> String {
         Verdict::NoGap => no_gap(finding),
         Verdict::Named | Verdict::Class if finding.many.is_some() => much(finding),
         Verdict::Named | Verdict::Class => {
-            let mut said: Vec<String> = finding.effects.iter().take(MOST_EFFECTS).map(effect).collect();
+            let told = finding.effects.iter().take(MOST_EFFECTS);
+            let mut said: Vec<String> = told.map(|one| effect(one, &finding.candidates)).collect();
             said.extend(more(&finding.effects));
             said.extend(
                 finding
@@ -119,13 +122,16 @@ fn not_in_library(finding: &Finding) -> String {
     };
     if finding.partial {
         let parts = finding.addable();
-        let told: Vec<String> =
-            parts.iter().take(MOST_EFFECTS).map(|i| effect(&finding.effects[*i])).collect();
+        // How large each is says little where it is no name, and stands beside it anyway.
+        let told = parts.iter().take(MOST_EFFECTS).map(|i| finding.effects[*i].title.as_str());
+        let mut told: Vec<String> = told.map(ToOwned::to_owned).collect();
         let more = parts.len().saturating_sub(MOST_EFFECTS);
-        let more = if more > 0 { format!(" And {more} more.") } else { String::new() };
+        if more > 0 {
+            told.push(format!("{more} more"));
+        }
         return format!(
-            "{gap}, and no name explains it. A part of it can be added: {}{more} {}{on}",
-            told.join(" "),
+            "{gap}, and no name explains it. A part of it can be added: {}. {}{on}",
+            told.join("; "),
             shrink(finding)
         );
     }
@@ -174,12 +180,12 @@ fn rest(any_told: bool, more: usize, zero: usize) -> Option<String> {
     }
 }
 
-fn effect(effect: &NamedEffect) -> String {
+fn effect(effect: &NamedEffect, candidates: &[Candidate]) -> String {
     let (told, zero): (Vec<&FoundParameter>, Vec<&FoundParameter>) =
         effect.parameters.iter().partition(|one| one.is_told());
     let any_told = !told.is_empty();
     let (told, more) = clearest(told);
-    let mut parameters: Vec<String> = told.into_iter().filter_map(parameter).collect();
+    let mut parameters: Vec<String> = told.into_iter().filter_map(|one| parameter(one, candidates)).collect();
     parameters.extend(rest(any_told, more, zero.len()));
     let sized = if parameters.is_empty() { String::new() } else { format!(": {}", parameters.join(", ")) };
     let others: Vec<&str> = effect.class.iter().skip(1).map(|member| member.title.as_str()).take(3).collect();
@@ -209,15 +215,30 @@ fn beside(members: &[ClassMember]) -> String {
 }
 
 /// A parameter in the units of the lab, as far as its name says its unit.
-fn parameter(parameter: &FoundParameter) -> Option<String> {
+fn parameter(parameter: &FoundParameter, candidates: &[Candidate]) -> Option<String> {
     let FoundParameter { name, value, low, high, .. } = parameter;
     let unit = parameter_units::of(name)?;
     let (said, [value, low, high]) = parameter_words::directed(name, [*value, *low, *high]);
+    let said = by_title(name, said, candidates);
     let [value, low, high] = [value, low, high].map(|si| si * unit.per_si);
     let decimals = number::decimals(high - low);
     let size = parameter_units::with_unit(&fixed(value, decimals), Some(unit));
     let (low, high) = (fixed(low, decimals), fixed(high, decimals));
     Some(format!("{said} {size} ({low} to {high})"))
+}
+
+/// A joint of a set as those that were tried call it: "right elbow bend off by" for "right elbow y off by".
+fn by_title(parameter: &str, said: String, candidates: &[Candidate]) -> String {
+    let starts = |candidate: &&Candidate| {
+        !candidate.site.is_empty() && parameter.starts_with(&format!("{}_", candidate.site))
+    };
+    let joints = candidates.iter().filter(starts).max_by_key(|candidate| candidate.site.len());
+    let titled = joints.and_then(|joint| {
+        let rest = said.strip_prefix(&parameter_words::place(&joint.site))?;
+        let (whose, _) = joint.title.split_once(": ")?;
+        Some(format!("{}{rest}", whose.to_lowercase()))
+    });
+    titled.unwrap_or(said)
 }
 
 fn fixed(value: f64, decimals: usize) -> String {
@@ -259,6 +280,7 @@ fn capital(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::finding::Knowledge;
 
     fn found(name: &str, value: f64, low: f64, high: f64) -> FoundParameter {
         FoundParameter { name: name.to_owned(), value, low, high, text: None }
@@ -266,7 +288,8 @@ mod tests {
 
     #[test]
     fn sizes_are_told_in_the_words_and_units_of_the_lab() {
-        let told = |name: &str, value: f64, low: f64, high: f64| parameter(&found(name, value, low, high));
+        let told =
+            |name: &str, value: f64, low: f64, high: f64| parameter(&found(name, value, low, high), &[]);
         let said = [
             (told("rot_x_rad", 0.02, 0.018, 0.022), "turned about its x axis by 1.15° (1.03 to 1.26)"),
             (told("amplitude_rad", 0.01, 0.008, 0.012), "moves by up to 0.57° (0.46 to 0.69)"),
@@ -281,6 +304,21 @@ mod tests {
         }
         // A number without a unit of its own is on the page, not in the sentence.
         assert_eq!(told("order", 2.0, 2.0, 2.0), None);
+    }
+
+    #[test]
+    fn joints_of_a_set_have_their_titles() {
+        let elbow = Candidate {
+            id: "joint-zero".to_owned(),
+            site: "r_elbow_y".to_owned(),
+            title: "Right elbow bend: zero position off".to_owned(),
+            probability: 0.0,
+            score_sigmas: 0.0,
+            knowledge: Knowledge::Known,
+        };
+        let said = by_title("r_elbow_y_offset_rad", "right elbow y off by".to_owned(), &[elbow]);
+        assert_eq!(said, "right elbow bend off by");
+        assert_eq!(by_title("offset_rad", "off by".to_owned(), &[]), "off by");
     }
 
     #[test]

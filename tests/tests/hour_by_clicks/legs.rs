@@ -33,8 +33,14 @@ pub const LEGS: &[Leg] = &[
         is_chosen: true,
         is_behind: |view| view.gap.shown.is_some() && view.gap.searching.is_none(),
     },
-    Leg { takes: Some(" to the model"), ..led("Add", "Gap", |view| !view.gap.model.effects.is_empty()) },
+    Leg { takes: Some(" to the model"), ..led("Add", "Gap", is_added) },
 ];
+
+/// Some was added, or nothing that was found may be: then the search said so, and what to measure next.
+fn is_added(view: &View) -> bool {
+    let can_be = view.gap.shown.as_ref().is_some_and(|shown| !shown.finding.addable().is_empty());
+    !view.gap.model.effects.is_empty() || !can_be
+}
 
 const fn led(name: &'static str, rail: &'static str, is_behind: fn(&View) -> bool) -> Leg {
     Leg { name, rail, takes: None, is_chosen: false, is_behind }
