@@ -86,12 +86,19 @@ fn who_can_hold_nothing_of_what_is_there_is_told_so_and_not_ready() {
 #[test]
 fn toys_that_made_room_are_not_simply_missing() {
     let twin = |made_room: &[&str]| {
-        let toys =
-            vec![ToyView { name: "tomato".to_owned(), place: None, radius_m: 0.03, rgb: [200, 40, 30] }];
+        let toy = |name: &str, place| {
+            let name = name.to_owned();
+            ToyView { name, place, radius_m: 0.03, rgb: [200, 40, 30] }
+        };
+        // What no hand can hold may stand beside the screen.
+        let toys = vec![toy("tomato", None), toy("banana", Some(Point::new(0.3, 0.4, 0.08)))];
         let made_room = made_room.iter().map(|name| (*name).to_owned()).collect();
         Arc::new(TwinView { running: true, toys, made_room, ..TwinView::default() })
     };
-    let view = |made_room: &[&str]| View { twin: twin(made_room), ..with(GraspView::default()) };
+    let view = |made_room: &[&str]| View {
+        twin: twin(made_room),
+        ..with(GraspView { classes: Arc::from(["Tomato"]), ..GraspView::default() })
+    };
     let room =
         "Tomato made room for touches and comes back once no hand is over the screen. Bring the arm home.";
     let mut window = on_grasp(&Fake::over(view(&["tomato"])));
