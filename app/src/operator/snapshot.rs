@@ -28,7 +28,7 @@ pub mod page {
 pub mod gap {
     pub use plumbline_engine::gap::{
         Candidate, Comparison, CoordinateComparison, Experiment, Finding, Knowledge, NamedEffect,
-        NextExperiment, Residual, Shown, ShownUnit, Unexplained, Unit, Verdict, What, plan_for,
+        NextExperiment, Residual, Shown, ShownUnit, Unexplained, Unit, Verdict, What, plan_for, titles,
     };
 
     #[cfg(test)]

@@ -4,7 +4,7 @@
 use plumbline_effects::{Assumed, Kind, Measurements};
 
 use crate::compare::{self, Compared};
-use crate::finding::{Dependence, FloorSource, Shown, Verdict};
+use crate::finding::{Dependence, FloorSource, NamedEffect, Shown, Verdict};
 use crate::search::{self, Found, Source};
 
 /// Rows stay above the noise when they are this many times as far off …
@@ -43,6 +43,25 @@ impl Shown {
     /// Whether held-out rows are about as far off as noise leaves them; none held out contradict nothing.
     pub fn is_near_noise(&self) -> bool {
         self.rows == 0 || self.after <= ABOVE * self.floor
+    }
+
+    /// Whether what may be added certainly closes a part of the gap, where it was judged; `is_all`: that is all that was
+    /// found.
+    fn closes_a_part(&self, is_all: bool) -> bool {
+        let unseen_after = |own: Option<f64>| self.unseen.as_ref().map(|unseen| (unseen.before, own));
+        let (closure, range, unseen) = match &self.part {
+            Some(part) => (part.closure, part.closure_range, unseen_after(part.unseen_after)),
+            // What was held out was predicted with all of them.
+            None if !is_all => return false,
+            None => {
+                let after = self.unseen.as_ref().map(|unseen| unseen.after);
+                (self.closure, self.closure_range, unseen_after(after))
+            }
+        };
+        let holds_elsewhere = unseen.is_none_or(|(before, after)| after.is_some_and(|after| after < before));
+        closure.is_some_and(|closure| closure > LEAST_PART)
+            && range.is_some_and(|[low, _]| low > 0.0)
+            && holds_elsewhere
     }
 
     /// `is_floor_known`: whether a floor that is exceeded was no guess.
@@ -107,12 +126,10 @@ pub(crate) fn bound_by_held_out(
                 .to_owned(),
         );
     }
-    let holds_elsewhere = shown.unseen.as_ref().is_none_or(|unseen| unseen.after < unseen.before);
-    let is_certain = shown.closure_range.is_some_and(|[low, _]| low > 0.0);
-    // What was held out was predicted with all of them.
-    let addable =
-        !found.effects.is_empty() && found.effects.iter().all(|effect| effect.not_addable.is_none());
-    found.verdict == Verdict::NotInLibrary && closure > LEAST_PART && is_certain && holds_elsewhere && addable
+    let is_addable = |effect: &NamedEffect| effect.not_addable.is_none();
+    found.verdict == Verdict::NotInLibrary
+        && found.effects.iter().any(is_addable)
+        && shown.closes_a_part(found.effects.iter().all(is_addable))
 }
 
 /// What leaves most of the gap open on the very rows that it was fitted to has no name, and cannot be expected
@@ -178,7 +195,7 @@ fn misled(found: &mut Found, probability: f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::finding::ShownUnit;
+    use crate::finding::{Part, ShownUnit, Unseen};
 
     /// Held-out rows of a gap of so many millimeters, and what is left of it beside half a millimeter of noise.
     fn shown(before_mm: f64, after_mm: f64) -> Shown {
@@ -195,6 +212,7 @@ mod tests {
             worst_tenth: [before, after],
             inside_95: 0.95,
             unseen: None,
+            part: None,
             covariates: vec![],
             telling: vec![],
         }
@@ -247,6 +265,30 @@ mod tests {
         assert_eq!(alike.says(true), HeldOut::Hold);
         assert_eq!(worse.says(true), HeldOut::Worse);
         assert_eq!(far.says(false), HeldOut::Worse);
+    }
+
+    #[test]
+    fn what_may_be_added_is_judged_by_itself() {
+        let all = Shown { closure_range: Some([0.5, 0.7]), ..shown(3.0, 1.5) };
+        assert!(all.closes_a_part(true) && !all.closes_a_part(false), "judged with what may not be added");
+        let part = |closure: f64, low: f64| Part {
+            after: 2.0e-3,
+            closure: Some(closure),
+            closure_range: Some([low, 0.9]),
+            unseen_after: None,
+        };
+        let divided = |part: Part| Shown { part: Some(part), ..all.clone() };
+        assert!(divided(part(0.4, 0.2)).closes_a_part(false));
+        assert!(!divided(part(0.1, 0.05)).closes_a_part(false), "too little to be a part");
+        assert!(!divided(part(0.4, -0.1)).closes_a_part(false), "by chance");
+        let unseen =
+            Unseen { what: "with a weight".to_owned(), rows: 20, before: 3e-3, after: 1e-3, floor: 5e-4 };
+        let there = |after: Option<f64>| Shown {
+            unseen: Some(unseen.clone()),
+            ..divided(Part { unseen_after: after, ..part(0.4, 0.2) })
+        };
+        assert!(there(Some(2e-3)).closes_a_part(false));
+        assert!(!there(Some(4e-3)).closes_a_part(false) && !there(None).closes_a_part(false), "not there");
     }
 
     #[test]

@@ -180,7 +180,9 @@ fn with_floor(compared: &mut Compared, floor: &Floor) {
 
 /// Says when named effects do not help on rows that were not used.
 fn no_help(found: &Found, shown: &Shown, options: &Options) -> Option<String> {
-    let helps = shown.after < shown.before || !options.show || found.assumed.effects.is_empty();
+    // Where some of it may not be added, the rest is what somebody would add.
+    let after = shown.part.as_ref().map_or(shown.after, |part| part.after);
+    let helps = after < shown.before || !options.show || found.assumed.effects.is_empty();
     (!helps).then(|| {
         "what was found does not make the error smaller on rows that were not used: do not add it, measure more rows \
          in other places first"

@@ -343,6 +343,9 @@ pub struct Shown {
     /// The same on a condition (weight, height, side) that was held out as a whole, where there is
     /// one: its name, before, after, floor.
     pub unseen: Option<Unseen>,
+    /// The same with what may be added alone; `None` where that is all that was found, or nothing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub part: Option<Part>,
     /// Names and units of [`Residual::covariates`].
     pub covariates: Vec<(String, String)>,
     /// Which of them gave the effects away, by place, the strongest first.
@@ -358,6 +361,19 @@ pub enum ShownUnit {
     Meter,
     /// Of image points.
     Pixel,
+}
+
+/// What rows that were not used show with those effects alone that may be added.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Part {
+    /// Mean error with them, in the unit of [`Shown`].
+    pub after: f64,
+    /// As [`Shown::closure`].
+    pub closure: Option<f64>,
+    /// As [`Shown::closure_range`].
+    pub closure_range: Option<[f64; 2]>,
+    /// Mean error with them on the condition of [`Shown::unseen`].
+    pub unseen_after: Option<f64>,
 }
 
 /// A condition that was held out as a whole.

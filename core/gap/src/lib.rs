@@ -20,6 +20,7 @@ mod sentence;
 mod servos;
 mod show;
 mod statistics;
+pub mod titles;
 mod watched;
 
 pub use error::{GapError, Turns};

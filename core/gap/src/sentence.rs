@@ -3,6 +3,7 @@
 use crate::finding::{
     Candidate, ClassMember, Finding, FloorSource, FoundParameter, NamedEffect, ShownUnit, Verdict,
 };
+use crate::titles::by_title;
 use crate::watched::WATCHED;
 use plumbline_model::{counted, number, parameter_units, parameter_words};
 
@@ -132,7 +133,7 @@ fn not_in_library(finding: &Finding) -> String {
         return format!(
             "{gap}, and no name explains it. A part of it can be added: {}. {}{on}",
             told.join("; "),
-            shrink(finding)
+            shrink_by_part(finding)
         );
     }
     let partly: Vec<&str> = finding.effects.iter().map(|effect| effect.title.as_str()).take(2).collect();
@@ -227,41 +228,41 @@ fn parameter(parameter: &FoundParameter, candidates: &[Candidate]) -> Option<Str
     Some(format!("{said} {size} ({low} to {high})"))
 }
 
-/// A joint of a set as those that were tried call it: "right elbow bend off by" for "right elbow y off by".
-fn by_title(parameter: &str, said: String, candidates: &[Candidate]) -> String {
-    let starts = |candidate: &&Candidate| {
-        !candidate.site.is_empty() && parameter.starts_with(&format!("{}_", candidate.site))
-    };
-    let joints = candidates.iter().filter(starts).max_by_key(|candidate| candidate.site.len());
-    let titled = joints.and_then(|joint| {
-        let rest = said.strip_prefix(&parameter_words::place(&joint.site))?;
-        let (whose, _) = joint.title.split_once(": ")?;
-        Some(format!("{}{rest}", whose.to_lowercase()))
-    });
-    titled.unwrap_or(said)
-}
-
 fn fixed(value: f64, decimals: usize) -> String {
     number::fixed(value, decimals).unwrap_or_else(|| "not known".to_owned())
 }
 
 fn shrink(finding: &Finding) -> String {
     let shown = &finding.shown;
-    let rows = match shown.unit {
-        ShownUnit::Meter | ShownUnit::Pixel if shown.closure.is_none() => {
-            return format!("The mean error is {}.", size(shown.before, shown.unit));
-        }
-        _ => "rows that were not used",
-    };
+    if shown.closure.is_none() {
+        return format!("The mean error is {}.", size(shown.before, shown.unit));
+    }
+    falls(finding, shown.after)
+}
+
+/// How the error falls on rows that were not used.
+fn falls(finding: &Finding, after: f64) -> String {
+    let shown = &finding.shown;
     let noise = if finding.comparison.is_noise_known() {
         format!("noise alone leaves {}", size(shown.floor, shown.unit))
     } else {
         "nothing tells how much of that is noise".to_owned()
     };
     format!(
-        "With it the error on {rows} falls from {} to {}; {noise}.",
+        "With it the error on rows that were not used falls from {} to {}; {noise}.",
         size(shown.before, shown.unit),
-        size(shown.after, shown.unit)
+        size(after, shown.unit)
+    )
+}
+
+/// The same of what may be added, and of all that was found beside it.
+fn shrink_by_part(finding: &Finding) -> String {
+    let shown = &finding.shown;
+    let Some(part) = &shown.part else { return shrink(finding) };
+    let all = size(shown.after, shown.unit);
+    format!(
+        "{} All that was found leaves {all}, but the rest of it cannot be added.",
+        falls(finding, part.after)
     )
 }
 
@@ -280,7 +281,6 @@ fn capital(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::finding::Knowledge;
 
     fn found(name: &str, value: f64, low: f64, high: f64) -> FoundParameter {
         FoundParameter { name: name.to_owned(), value, low, high, text: None }
@@ -304,21 +304,6 @@ mod tests {
         }
         // A number without a unit of its own is on the page, not in the sentence.
         assert_eq!(told("order", 2.0, 2.0, 2.0), None);
-    }
-
-    #[test]
-    fn joints_of_a_set_have_their_titles() {
-        let elbow = Candidate {
-            id: "joint-zero".to_owned(),
-            site: "r_elbow_y".to_owned(),
-            title: "Right elbow bend: zero position off".to_owned(),
-            probability: 0.0,
-            score_sigmas: 0.0,
-            knowledge: Knowledge::Known,
-        };
-        let said = by_title("r_elbow_y_offset_rad", "right elbow y off by".to_owned(), &[elbow]);
-        assert_eq!(said, "right elbow bend off by");
-        assert_eq!(by_title("offset_rad", "off by".to_owned(), &[]), "off by");
     }
 
     #[test]

@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{Plan, elbow_zero, normal, poses, touches};
+use common::{Plan, elbow_zero, normal, poses, present, touches};
 use plumbline_effects::{Measurements, Situation};
 use plumbline_gap::{Finding, Options, Verdict, find};
 use plumbline_model::Unattended;
@@ -158,17 +158,40 @@ fn servos_that_hold_have_no_name() {
     }
 }
 
-#[test]
-fn what_closes_a_part_beside_something_unknown_can_be_added_as_a_part() {
-    let mut made = touches(&Plan { places: 90, ..Plan::default() }, &[elbow_zero(0.1)], 9);
-    // Every place is off by an amount of its own.
-    let mut random = StdRng::seed_from_u64(10);
+/// Every place is off by an amount of its own.
+fn with_places_off(mut made: Measurements, seed: u64) -> Measurements {
+    let mut random = StdRng::seed_from_u64(seed);
     let cells = 1 + made.rows.iter().map(|row| row.cell).max().unwrap_or(0);
     let off: Vec<[f64; 2]> =
         (0..cells).map(|_| [0, 1].map(|_| 3e-3 * (2.0 * random.random::<f64>() - 1.0))).collect();
     for row in &mut made.rows {
         (0..2).for_each(|c| row.measured[c] += off[row.cell][c]);
     }
+    made
+}
+
+#[test]
+fn what_may_be_added_is_offered_beside_a_fit_that_may_not() {
+    // The tip is further off than any that was measured.
+    let plan = Plan { places: 90, ..Plan::default() };
+    let some = touches(&Plan { places: 1, repeats: 1, ..Plan::default() }, &[], 1);
+    let far = present(&some, "tip-offset", "tip", &[0.06, 0.0, 0.0]);
+    let made = with_places_off(touches(&plan, &[elbow_zero(0.1), far], 9), 10);
+    let finding = looked_at(&made, true);
+    assert_eq!(finding.verdict, Verdict::NotInLibrary);
+    let barred = finding.effects.iter().filter(|effect| effect.not_addable.is_some()).count();
+    assert_eq!((barred, finding.effects.len()), (1, 2));
+    let part = finding.shown.part.as_ref().expect("judged by itself");
+    assert!(part.after < finding.shown.before && part.after != finding.shown.after, "{:?}", finding.shown);
+    assert!(finding.warnings.iter().all(|words| !words.contains("do not add it")), "{:?}", finding.warnings);
+    assert!(finding.partial && finding.addable().len() == 1);
+    assert!(finding.sentence.contains("the rest of it cannot be added"), "{}", finding.sentence);
+}
+
+#[test]
+fn what_closes_a_part_beside_something_unknown_can_be_added_as_a_part() {
+    let plan = Plan { places: 90, ..Plan::default() };
+    let made = with_places_off(touches(&plan, &[elbow_zero(0.1)], 9), 10);
     let finding = looked_at(&made, true);
     assert_eq!(finding.verdict, Verdict::NotInLibrary);
     assert!(finding.partial, "{:?}", finding.shown);

@@ -365,6 +365,13 @@ fn held_out(finding: &Finding) -> Map<String, Value> {
     keys.insert("closure".to_owned(), shown.closure.into());
     keys.insert("closure_range".to_owned(), shown.closure_range.map(Vec::from).into());
     keys.insert("blocks".to_owned(), shown.blocks.clone().into());
+    if let Some(part) = &shown.part {
+        let mut of = Map::new();
+        of.insert(format!("after_{unit}"), (part.after * scale).into());
+        of.insert("closure".to_owned(), part.closure.into());
+        of.insert("closure_range".to_owned(), part.closure_range.map(Vec::from).into());
+        keys.insert("addable_alone".to_owned(), of.into());
+    }
     if let Some(unseen) = &shown.unseen {
         let mut of = Map::new();
         of.insert("what".to_owned(), unseen.what.clone().into());

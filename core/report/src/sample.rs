@@ -264,6 +264,7 @@ fn base() -> Finding {
                 after: 3.9e-3,
                 floor: 3.0e-3,
             }),
+            part: None,
             covariates: vec![
                 ("angle of the elbow".to_owned(), "rad".to_owned()),
                 ("load of the shoulder".to_owned(), "N m".to_owned()),

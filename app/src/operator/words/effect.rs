@@ -4,7 +4,7 @@ use plumbline_engine::view::AddedEffect;
 use plumbline_model::parameter_words;
 use plumbline_widgets::format;
 
-use crate::operator::snapshot::gap::{Candidate, NamedEffect};
+use crate::operator::snapshot::gap::{Candidate, NamedEffect, titles};
 
 /// Parameters whose intervals hold zero, counted beside those that are told.
 pub fn not_told(told: usize, not_told: usize) -> Option<String> {
@@ -26,7 +26,7 @@ pub fn short(effect: &NamedEffect) -> String {
 pub fn named(id: &str, site: &str, title: &str) -> String {
     let kind = id.replace('-', " ");
     match title.split_once(": ") {
-        Some((whose, _)) => format!("{kind} of {}", parameter_words::the(&lower(whose))),
+        Some((whose, _)) => format!("{kind} of {}", parameter_words::the(&titles::inside(whose))),
         None if matches!(site, "" | "screen" | "tip" | "base" | "eyes") => kind,
         None if site == "right" => format!("{kind} of the right eye"),
         None => format!("{kind} of {}", parameter_words::the(&parameter_words::place(site))),
@@ -57,26 +57,13 @@ pub fn moved(effect: &AddedEffect) -> Option<String> {
 
 /// What a parameter chooses, in words: a joint, as those that were tried call it, or one of two things.
 pub fn choice(text: &str, candidates: &[Candidate]) -> String {
-    let of_joint = candidates.iter().filter(|candidate| candidate.site == text);
-    let whose =
-        of_joint.filter_map(|candidate| candidate.title.split_once(": ")).map(|(whose, _)| whose).next();
-    whose.map_or_else(|| parameter_words::place(text), lower)
+    titles::whose(text, candidates)
 }
 
 /// What is said before the value of a parameter; the joint that it belongs to, where one effect stands for every joint,
 /// as those that were tried call it: "right elbow bend off by".
 pub fn before_value(parameter: &str, candidates: &[Candidate]) -> String {
-    let said = parameter_words::said(parameter);
-    let of_joint = |candidate: &&Candidate| {
-        !candidate.site.is_empty() && parameter.starts_with(&format!("{}_", candidate.site))
-    };
-    let site =
-        candidates.iter().filter(of_joint).map(|candidate| &candidate.site).max_by_key(|site| site.len());
-    site.and_then(|site| {
-        let rest = said.strip_prefix(&parameter_words::place(site))?;
-        Some(format!("{}{rest}", choice(site, candidates)))
-    })
-    .unwrap_or(said)
+    titles::by_title(parameter, parameter_words::said(parameter), candidates)
 }
 
 /// How much less probable the runner-up is: "200 times less probable".
@@ -95,15 +82,6 @@ pub fn odds(margin_log10: f64) -> String {
 pub fn runner_up(effect: &NamedEffect, candidates: &[Candidate]) -> Option<String> {
     let (name, margin_log10) = effect.runner_up.as_ref()?;
     Some(format!("Runner-up: {}, {}.", of_name(name, candidates), odds(*margin_log10)))
-}
-
-/// Names of parts begin small inside of a sentence; abbreviations stay.
-fn lower(text: &str) -> String {
-    let mut letters = text.chars();
-    match (letters.next(), letters.clone().next()) {
-        (Some(first), Some(second)) if second.is_lowercase() => first.to_lowercase().chain(letters).collect(),
-        _ => text.to_owned(),
-    }
 }
 
 #[cfg(test)]

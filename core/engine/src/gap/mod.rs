@@ -23,7 +23,7 @@ pub use plumbline_gap::finding::{
     Candidate, Comparison, CoordinateComparison, Experiment, Finding, Knowledge, NamedEffect, NextExperiment,
     Residual, Shown, ShownUnit, Unexplained,
 };
-pub use plumbline_gap::{Verdict, plan_for};
+pub use plumbline_gap::{Verdict, plan_for, titles};
 pub use plumbline_report::sample;
 pub use search::same_rig;
 pub use workflow::{GapAround, GapWorkflow};

@@ -167,14 +167,19 @@ pub fn with(
 }
 
 fn gap(shown: &Shown) -> Option<StepGap> {
+    // What may not be added is not in the model either.
+    let (after, closure, closure_range) =
+        shown.part.as_ref().map_or((shown.after, shown.closure, shown.closure_range), |part| {
+            (part.after, part.closure, part.closure_range)
+        });
     (shown.rows > 0).then(|| StepGap {
         unit: if shown.unit == ShownUnit::Pixel { "px" } else { "m" }.to_owned(),
         rows: shown.rows,
         before: shown.before,
-        after: shown.after,
+        after,
         floor: shown.floor,
-        closure: shown.closure,
-        closure_range: shown.closure_range,
+        closure,
+        closure_range,
     })
 }
 

@@ -93,6 +93,7 @@ fn finding(effects: Vec<NamedEffect>) -> Finding {
             worst_tenth: [12e-3, 6e-3],
             inside_95: 0.95,
             unseen: None,
+            part: None,
             covariates: vec![],
             telling: vec![],
         },

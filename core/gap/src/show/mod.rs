@@ -4,6 +4,7 @@
 mod coverage;
 mod folds;
 mod judged;
+mod part;
 mod strangers;
 mod telling;
 mod unseen;
@@ -19,7 +20,7 @@ use rayon::prelude::*;
 
 use crate::compare::{Compared, placed};
 use crate::error::GapError;
-use crate::finding::{Residual, Shown, ShownUnit};
+use crate::finding::{Part, Residual, Shown, ShownUnit};
 use crate::options::Options;
 use crate::search::{self, Found};
 use judged::{Judged, judged, noise_of};
@@ -37,6 +38,8 @@ struct HeldOut {
     block: usize,
     before: Judged,
     after: Judged,
+    /// With what may be added alone, where that is judged by itself.
+    part: Option<Judged>,
     /// What noise alone would leave.
     noise: f64,
     /// Coordinates inside of their predicted interval, and all.
@@ -98,12 +101,18 @@ pub(crate) fn show(
         .filter(|row| !compared.outlier[row.row] && counts(measurements.rows[row.row].what, unit))
         .collect();
     let mut shown = summary(&counted, unit, folds.words, options.seed);
+    shown.part = part::summary(&counted, options.seed);
     let before: Vec<(usize, Vector3<f64>)> =
         held_out.iter().map(|row| (row.row, row.before.arrow_m)).collect();
     shown.telling = telling::telling(&compared.covariates, &before);
     shown.covariates.clone_from(&compared.covariates.names);
     context.checkpoint()?;
-    shown.unseen = unseen::unseen(measurements, compared, found, &chosen, options, context)?;
+    if let Some((unseen, part_after)) =
+        unseen::unseen(measurements, compared, found, &chosen, options, context)?
+    {
+        shown.unseen = Some(unseen);
+        shown.part = shown.part.map(|part| Part { unseen_after: part_after, ..part });
+    }
     Ok(Show { shown, residuals })
 }
 
@@ -118,7 +127,16 @@ pub(crate) fn nothing_added(measurements: &Measurements, compared: &Compared) ->
         .filter_map(|(i, row)| {
             let judged = judged(measurements, row, &compared.assumed)?;
             let noise = noise_of(measurements, row, &compared.assumed, &compared.floor, 1.0)?;
-            Some(HeldOut { row: i, block: i, before: judged, after: judged, noise, inside: (0, 0) })
+            let row = HeldOut {
+                row: i,
+                block: i,
+                before: judged,
+                after: judged,
+                part: None,
+                noise,
+                inside: (0, 0),
+            };
+            Some(row)
         })
         .collect();
     let mut shown = summary(&rows, unit, "no row was held out: nothing was added".to_owned(), 1);
@@ -143,7 +161,9 @@ fn without(
     let known = measurements.only(training.iter().copied());
     let mut before = placed(measurements, training, context)?;
     let mut found = search::search(&known, &compared.floor, options, context)?;
-    strangers::place(measurements, &compared.floor, training, tested, &mut before, &mut found.assumed);
+    let mut part = part::is_divided(whole).then(|| part::of(&known, &compared.floor, whole, &found));
+    let models = [&mut before, &mut found.assumed].into_iter().chain(part.as_mut());
+    strangers::place(measurements, &compared.floor, training, tested, models.collect());
     let scale = whole.doubt.noise_scale;
     Ok(tested
         .par_iter()
@@ -154,6 +174,10 @@ fn without(
                 block,
                 before: judged(measurements, row, &before)?,
                 after: judged(measurements, row, &found.assumed)?,
+                part: match &part {
+                    Some(part) => Some(judged(measurements, row, part)?),
+                    None => None,
+                },
                 noise: noise_of(measurements, row, &found.assumed, &compared.floor, scale)?,
                 inside: coverage::inside_95(measurements, row, &compared.floor, &found)?,
             })
@@ -195,6 +219,7 @@ fn summary(rows: &[HeldOut], unit: ShownUnit, blocks: String, seed: u64) -> Show
         worst_tenth: [worst(|row| row.before.error), worst(|row| row.after.error)],
         inside_95: inside as f64 / all.max(1) as f64,
         unseen: None,
+        part: None,
         covariates: vec![],
         telling: vec![],
     }

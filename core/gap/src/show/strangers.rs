@@ -14,8 +14,7 @@ pub(super) fn place(
     floor: &Floor,
     training: &[usize],
     tested: &[(usize, usize)],
-    before: &mut Assumed,
-    after: &mut Assumed,
+    mut models: Vec<&mut Assumed>,
 ) {
     for session in 0..measurements.apparatuses.len() {
         let own = |i: usize| measurements.rows[i].session == session;
@@ -26,7 +25,7 @@ pub(super) fn place(
         let all: Vec<usize> = (0..rows.rows.len()).collect();
         // An external frame and a marker can stand anywhere, farther off than a fit reaches.
         let Ok(start) = placed(&rows, &all, &Unattended) else { continue };
-        for assumed in [&mut *before, &mut *after] {
+        for assumed in &mut models {
             stand_as(assumed, &start, &rows, session);
             let fitted = search::place(&rows, floor, assumed);
             stand_as(assumed, &fitted, &rows, session);
@@ -112,7 +111,7 @@ joints = ["r_shoulder_z", "r_shoulder_y", "r_arm_x", "r_elbow_y", "r_wrist_z", "
         let floor = Floor { kinds: vec![kind], source: FloorSource::Repeats };
         let mut before = placed(&made, &training, &Unattended).expect("not cancelled");
         let mut after = before.clone();
-        place(&made, &floor, &training, &tested, &mut before, &mut after);
+        place(&made, &floor, &training, &tested, vec![&mut before, &mut after]);
         for assumed in [&before, &after] {
             let off_m = assumed.mount(1).translation.vector - truth.mount(1).translation.vector;
             assert!(off_m.norm() < 2e-3, "{off_m:?}");

@@ -6,7 +6,7 @@ use plumbline_effects::Measurements;
 use plumbline_effects::measurements::Observation;
 use plumbline_model::JobContext;
 
-use super::{Quiet, counts, means, unit_of, without};
+use super::{Quiet, counts, means, part, unit_of, without};
 use crate::compare::Compared;
 use crate::error::GapError;
 use crate::finding::Unseen;
@@ -18,7 +18,8 @@ const FEWEST_HELD_OUT: usize = 8;
 /// … and so many to be left.
 const FEWEST_LEFT: usize = 24;
 
-/// Holds out the first of weight, height and side that has two levels with enough rows.
+/// Holds out the first of weight, height and side that has two levels with enough rows; beside it the mean error with what
+/// may be added alone, where that is judged by itself.
 pub(super) fn unseen(
     measurements: &Measurements,
     compared: &Compared,
@@ -26,7 +27,7 @@ pub(super) fn unseen(
     chosen: &[usize],
     options: &Options,
     context: &dyn JobContext,
-) -> Result<Option<Unseen>, GapError> {
+) -> Result<Option<(Unseen, Option<f64>)>, GapError> {
     let Some((what, held_out)) = condition(measurements, chosen) else { return Ok(None) };
     let training: Vec<usize> = chosen.iter().copied().filter(|i| !held_out.contains(i)).collect();
     let tested: Vec<(usize, usize)> = held_out.iter().map(|&i| (i, 0)).collect();
@@ -37,7 +38,8 @@ pub(super) fn unseen(
         return Ok(None);
     }
     let [before, after, floor] = means(&rows);
-    Ok(Some(Unseen { what, rows: rows.len(), before, after, floor }))
+    let part_after = part::summary(&rows, options.seed).map(|part| part.after);
+    Ok(Some((Unseen { what, rows: rows.len(), before, after, floor }, part_after)))
 }
 
 /// The level of a condition that a row has.
