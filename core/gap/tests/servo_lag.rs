@@ -1,14 +1,20 @@
-//! Noise of encoders is no reading that was taken too early.
+//! Noise of encoders is no reading that was taken too early, and what is fast does not stick.
+#![allow(clippy::print_stdout, reason = "what is said is read from the test's output")]
 
 mod common;
 
-use common::{Plan, elbow_zero, normal, present, touches};
+use common::{JOINTS, Plan, elbow_zero, normal, present, touches};
+use plumbline_effects::measurements::Observation;
 use plumbline_effects::{Assumed, Measurements};
 use plumbline_gap::{Options, find};
 use plumbline_model::Unattended;
 use rand::SeedableRng;
 use rand::rngs::StdRng;
 
+/// How fast the finger comes down, m per radian of the slowest joint.
+const DOWN_M: f64 = 0.2;
+/// By place among the joints.
+const SHOULDER: usize = 1;
 /// Spread of what an encoder reads, rad.
 const READING_RAD: f64 = 1.5e-3;
 
@@ -39,7 +45,7 @@ fn logged(sides: &[&'static str], lag_rad: f64, early: f64, seed: u64) -> Measur
 }
 
 /// The row with the angles that the arm really had.
-fn touched(made: &Measurements, i: usize, there: &[f64]) -> plumbline_effects::measurements::Observation {
+fn touched(made: &Measurements, i: usize, there: &[f64]) -> Observation {
     let mut row = made.rows[i].clone();
     row.encoder_rad = Some(there.to_vec());
     row
@@ -69,5 +75,64 @@ fn encoders_that_were_read_too_early_are_found_through_their_noise() {
             .iter()
             .filter(|effect| !["early-log", "joint-zero"].contains(&effect.id.as_str()));
         assert_eq!(others.count(), 0, "{}", finding.sentence);
+    }
+}
+
+/// How far each joint lowers the finger in a row, m/rad.
+fn lowers(made: &Measurements, row: &Observation) -> Vec<f64> {
+    let nominal = Assumed::nominal(made);
+    let height_m = |row: &Observation| made.predict(row, &nominal).expect("predictable")[2];
+    let here = height_m(row);
+    let slope = |j: usize| {
+        let mut ahead = row.clone();
+        ahead.commanded_rad.as_mut().expect("commanded")[j] += 1e-5;
+        (here - height_m(&ahead)) / 1e-5
+    };
+    (0..row.direction.len()).map(slope).collect()
+}
+
+/// Touches from both sides. Every joint turns one way until the finger meets the glass; where those that lift it would win,
+/// those that lower it are all faster by the same factor. Servos stay behind by a little and by their speed, `stuck` of them
+/// (joint, times) by so many times more.
+fn moved(stuck: Option<(usize, f64)>, seed: u64) -> Measurements {
+    let plan = Plan { places: 80, sides: vec!["plus", "minus"], noise_m: 0.7e-3, ..Plan::default() };
+    let mut made = touches(&plan, &[], seed);
+    let mut random = StdRng::seed_from_u64(seed + 2000);
+    for i in 0..made.rows.len() {
+        let sinks: Vec<f64> = lowers(&made, &made.rows[i])
+            .iter()
+            .zip(&made.rows[i].direction)
+            .map(|(lowers, side)| lowers * side)
+            .collect();
+        let sum = |way: f64| sinks.iter().map(|sink| (way * sink).max(0.0)).sum::<f64>();
+        let faster = ((sum(-1.0) + DOWN_M) / sum(1.0).max(1e-3)).clamp(1.0, 8.0);
+        let row = &mut made.rows[i];
+        let there = row.commanded_rad.clone().expect("commanded");
+        let lag = |j: usize| {
+            let rate = if sinks[j] > 0.0 { faster } else { 1.0 };
+            let own = stuck.filter(|(joint, _)| *joint == j).map_or(1.0, |(_, times)| times);
+            own * (1e-3 + 4e-3 * rate) * row.direction[j] + 1e-4 * normal(&mut random)
+        };
+        let lags: Vec<f64> = (0..there.len()).map(lag).collect();
+        row.commanded_rad = Some(there.iter().zip(&lags).map(|(at, lag)| at + lag).collect());
+        row.encoder_rad = Some(there);
+    }
+    made.complete_lags();
+    made
+}
+
+#[test]
+fn servos_that_lag_by_their_speed_do_not_stick_and_one_that_stays_behind_by_more_does() {
+    let options = Options { show: false, advise: false, ..Options::default() };
+    let sticking = |made: &Measurements| {
+        let finding = find(made, &options, &Unattended).expect("can be looked at");
+        println!("{:?}: {}", finding.verdict, finding.sentence);
+        let of_friction = finding.effects.iter().filter(|effect| effect.id == "stiction");
+        of_friction.map(|effect| effect.site.clone()).collect::<Vec<_>>()
+    };
+    for seed in 0..3 {
+        assert_eq!(sticking(&moved(None, seed)), Vec::<String>::new(), "all are as they should be");
+        let stuck = sticking(&moved(Some((SHOULDER, 4.0)), seed));
+        assert_eq!(stuck, [JOINTS[SHOULDER]]);
     }
 }
