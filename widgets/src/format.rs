@@ -120,19 +120,19 @@ pub fn mm_with(length_m: f64, sigma_m: f64) -> String {
     Quantity::Length.text_with(length_m, sigma_m)
 }
 
-/// Meters as centimeters: `1.4 cm`. For what a calibration costs on the table.
-pub fn cm(length_m: f64) -> String {
-    let number = fixed(100.0 * length_m, 1);
-    if length_m.is_finite() { format!("{number} cm") } else { number }
+/// Meters as whole millimeters: `14 mm`. For what a calibration costs on the table.
+pub fn whole_mm(length_m: f64) -> String {
+    let number = fixed(1e3 * length_m, 0);
+    if length_m.is_finite() { format!("{number} mm") } else { number }
 }
 
-/// Meters as centimeters with one standard deviation: `1.4 ± 0.2 cm`.
-pub fn cm_with(length_m: f64, sigma_m: f64) -> String {
+/// Meters as whole millimeters with one standard deviation: `14 ± 2 mm`.
+pub fn whole_mm_with(length_m: f64, sigma_m: f64) -> String {
     if !(length_m.is_finite() && sigma_m.is_finite() && sigma_m != 0.0) {
-        return cm(length_m);
+        return whole_mm(length_m);
     }
     // What is known is never known without error: it is not rounded to nothing.
-    format!("{} ± {}", fixed(100.0 * length_m, 1), cm(sigma_m.abs().max(1e-3)))
+    format!("{} ± {}", fixed(1e3 * length_m, 0), whole_mm(sigma_m.abs().max(1e-3)))
 }
 
 /// Meters: `0.450 m`. For distances from the eyes; errors and positions are in [`mm`].
@@ -326,12 +326,12 @@ mod tests {
     }
 
     #[test]
-    fn what_a_calibration_costs_is_in_centimeters() {
-        assert_eq!(cm(0.0137), "1.4 cm");
-        assert_eq!(cm_with(0.0137, 0.002), "1.4 ± 0.2 cm");
-        assert_eq!(cm_with(0.0137, f64::NAN), "1.4 cm");
-        assert_eq!(cm_with(0.0137, 0.0), "1.4 cm");
-        assert_eq!(cm_with(0.0137, 2e-4), "1.4 ± 0.1 cm");
-        assert_eq!((cm(f64::NAN), cm_with(f64::NAN, 0.1)), (NONE.to_owned(), NONE.to_owned()));
+    fn what_a_calibration_costs_is_in_whole_millimeters() {
+        assert_eq!(whole_mm(0.0137), "14 mm");
+        assert_eq!(whole_mm_with(0.0137, 0.002), "14 ± 2 mm");
+        assert_eq!(whole_mm_with(0.0137, f64::NAN), "14 mm");
+        assert_eq!(whole_mm_with(0.0137, 0.0), "14 mm");
+        assert_eq!(whole_mm_with(0.0137, 2e-4), "14 ± 1 mm");
+        assert_eq!((whole_mm(f64::NAN), whole_mm_with(f64::NAN, 0.1)), (NONE.to_owned(), NONE.to_owned()));
     }
 }

@@ -80,7 +80,7 @@ fn figures(ui: &mut Ui, name: &str, figures: &HealthFigures) {
     let mut rows: Vec<KeyValue> = ROWS
         .into_iter()
         .zip(off)
-        .map(|(row, (off_m, sigma_m))| KeyValue::text(row, format::cm_with(off_m, sigma_m)))
+        .map(|(row, (off_m, sigma_m))| KeyValue::text(row, format::whole_mm_with(off_m, sigma_m)))
         .collect();
     rows.push(KeyValue::quantity("Right eye has turned", Quantity::Angle, figures.turn_rad));
     rows.push(

@@ -233,7 +233,7 @@ fn what_a_correction_by_time_states_is_said_in_centimeters_and_only_where_one_is
     let corrected = DriftView { stated_m: Some([0.004, 0.007, 0.012]), ..watching(Some(course(12.0))) };
     let fake = Fake::over(with(corrected));
     let window = fake.window(on(Screen::Drift));
-    assert!(says(&window, "stated to lie within 0.4 cm near, 0.7 cm in the middle, 1.2 cm far"));
+    assert!(says(&window, "stated to lie within 4 mm near, 7 mm in the middle, 12 mm far"));
     let fake = Fake::over(with(watching(Some(course(12.0)))));
     assert!(!says(&fake.window(on(Screen::Drift)), "stated to lie within"));
 }

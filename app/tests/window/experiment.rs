@@ -95,7 +95,10 @@ fn it_is_put_together_and_begun() {
 fn a_person_is_asked_to_lay_the_thing_down() {
     let fake = Fake::over(with(TrialsPhase::Asks { trial: trial(), at_m: [0.3, -0.2] }));
     let mut window = window(&fake);
-    assert!(says(&window, "Put the tomato at (30, −20) cm: 30 cm ahead of the robot, 20 cm to its right."));
+    assert!(says(
+        &window,
+        "Put the tomato at (300, −200) mm: 300 mm ahead of the robot, 200 mm to its right."
+    ));
     click(&mut window, "Placed");
     assert_eq!(fake.take_sent(), [Command::from(TrialsCommand::Placed)]);
 }

@@ -74,7 +74,7 @@ fn with_health(health: HealthView) -> View {
 fn a_calibration_that_does_not_hold_is_said_where_it_counts_and_leads_to_a_new_one() {
     for screen in [Screen::Live, Screen::Drift] {
         let why =
-            "The calibration of the eyes does not hold any more: places are off by 3.2 cm far.".to_owned();
+            "The calibration of the eyes does not hold any more: places are off by 32 mm far.".to_owned();
         let fake = Fake::over(with_health(HealthView { does_not_hold: Some(why), ..HealthView::default() }));
         let mut window = fake.window(on(screen));
         assert!(says(&window, "does not hold any more"), "{screen:?}");
@@ -93,10 +93,10 @@ fn it_is_asked_for_beside_drift_and_answered_in_centimeters() {
         (HealthState::Gathering { pairs: 2, of: 4 }, "Looks: 2 of 4 pairs."),
         (HealthState::Judging, "Compares what both eyes see."),
         (HealthState::Failed("Is the light on?".to_owned()), "Is the light on?"),
-        (judged(0.004, None), "still good: places are off by 0.1 cm near, 0.2 cm in the middle, 0.4 cm far"),
+        (judged(0.004, None), "still good: places are off by 1 mm near, 2 mm in the middle, 4 mm far"),
         (
             judged(0.04, None),
-            "not good any more: places are off by 1.0 cm near, 2.0 cm in the middle, 4.0 cm far",
+            "not good any more: places are off by 10 mm near, 20 mm in the middle, 40 mm far",
         ),
     ] {
         let fake = Fake::over(with(state));
@@ -158,7 +158,7 @@ fn cold_eyes_are_told_to_wait_instead_of_being_calibrated_again() {
     };
     let fake = Fake::over(with_health(health));
     let window = fake.window(on(Screen::Drift));
-    assert!(says(&window, "Wait 11 min, then ask again.") && says(&window, "off by 1.0 cm near"));
+    assert!(says(&window, "Wait 11 min, then ask again.") && says(&window, "off by 10 mm near"));
     assert!(!says(&window, "Calibrate the eyes again"));
 }
 
@@ -203,8 +203,8 @@ fn a_proposal_that_is_not_better_is_not_offered_and_both_are_told_in_figures() {
         let fake = Fake::over(with(judged(0.004, Some((0.02, verdict)))));
         let window = fake.window(on(Screen::Accept));
         assert!(says(&window, words), "{words}");
-        assert!(says(&window, "In use: 0.1 cm near, 0.2 cm in the middle, 0.4 cm far"), "{words}");
-        assert!(says(&window, "proposed: 0.5 cm near, 1.0 cm in the middle, 2.0 cm far"), "{words}");
+        assert!(says(&window, "In use: 1 mm near, 2 mm in the middle, 4 mm far"), "{words}");
+        assert!(says(&window, "proposed: 5 mm near, 10 mm in the middle, 20 mm far"), "{words}");
         assert!(
             !shows(&window, "Accept calibration") && !shows(&window, "Accept it all the same"),
             "{words}"

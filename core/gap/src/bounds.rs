@@ -4,7 +4,7 @@
 use plumbline_effects::{Assumed, Kind, Measurements};
 
 use crate::compare::{self, Compared};
-use crate::finding::{Dependence, FloorSource, NamedEffect, Shown, Verdict};
+use crate::finding::{Dependence, FloorSource, Shown, Verdict};
 use crate::search::{self, Found, Source};
 
 /// Rows stay above the noise when they are this many times as far off …
@@ -25,8 +25,6 @@ const LARGEST_NOISE: f64 = 3.9;
 const LEAST_STRUCTURE: f64 = 0.4;
 /// … or by less than this share of the gap.
 const STRUCTURE_SHARE: f64 = 0.2;
-/// What closes less of the gap is no part of it.
-const LEAST_PART: f64 = 0.15;
 
 /// What rows that were not used say of the names that were found on the others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,25 +41,6 @@ impl Shown {
     /// Whether held-out rows are about as far off as noise leaves them; none held out contradict nothing.
     pub fn is_near_noise(&self) -> bool {
         self.rows == 0 || self.after <= ABOVE * self.floor
-    }
-
-    /// Whether what may be added certainly closes a part of the gap, where it was judged; `is_all`: that is all that was
-    /// found.
-    fn closes_a_part(&self, is_all: bool) -> bool {
-        let unseen_after = |own: Option<f64>| self.unseen.as_ref().map(|unseen| (unseen.before, own));
-        let (closure, range, unseen) = match &self.part {
-            Some(part) => (part.closure, part.closure_range, unseen_after(part.unseen_after)),
-            // What was held out was predicted with all of them.
-            None if !is_all => return false,
-            None => {
-                let after = self.unseen.as_ref().map(|unseen| unseen.after);
-                (self.closure, self.closure_range, unseen_after(after))
-            }
-        };
-        let holds_elsewhere = unseen.is_none_or(|(before, after)| after.is_some_and(|after| after < before));
-        closure.is_some_and(|closure| closure > LEAST_PART)
-            && range.is_some_and(|[low, _]| low > 0.0)
-            && holds_elsewhere
     }
 
     /// `is_floor_known`: whether a floor that is exceeded was no guess.
@@ -105,20 +84,18 @@ fn is_told(source: FloorSource, is_watched: bool, noise_scale: f64) -> bool {
 
 /// What makes rows that were not used worse, leaves most of the gap open there, or leaves them far above the noise, has
 /// no name, whatever speaks for it on those that were; and a closure beyond one says that the floor was not the floor.
-/// Whether what was found is no name, but closes a part of the gap.
 pub(crate) fn bound_by_held_out(
     found: &mut Found,
     used: &Measurements,
     shown: &Shown,
     warnings: &mut Vec<String>,
-) -> bool {
+) {
     let named = matches!(found.verdict, Verdict::Named | Verdict::Class);
     if named && shown.says(is_floor_known(found, used)) != HeldOut::Hold {
         misled(found, 0.5);
     }
-    let Some(closure) = shown.closure else { return false };
     // Of a floor that was fitted it is said already that nobody knows it.
-    if closure > 1.0 && found.floor.source != FloorSource::Fitted {
+    if shown.closure.is_some_and(|closure| closure > 1.0) && found.floor.source != FloorSource::Fitted {
         warnings.insert(
             0,
             "more of the gap closes than the noise leaves open: the noise was taken too large. Repeat a few measurements \
@@ -126,10 +103,6 @@ pub(crate) fn bound_by_held_out(
                 .to_owned(),
         );
     }
-    let is_addable = |effect: &NamedEffect| effect.not_addable.is_none();
-    found.verdict == Verdict::NotInLibrary
-        && found.effects.iter().any(is_addable)
-        && shown.closes_a_part(found.effects.iter().all(is_addable))
 }
 
 /// What leaves most of the gap open on the very rows that it was fitted to has no name, and cannot be expected
@@ -195,7 +168,7 @@ fn misled(found: &mut Found, probability: f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::finding::{Part, ShownUnit, Unseen};
+    use crate::finding::ShownUnit;
 
     /// Held-out rows of a gap of so many millimeters, and what is left of it beside half a millimeter of noise.
     fn shown(before_mm: f64, after_mm: f64) -> Shown {
@@ -265,30 +238,6 @@ mod tests {
         assert_eq!(alike.says(true), HeldOut::Hold);
         assert_eq!(worse.says(true), HeldOut::Worse);
         assert_eq!(far.says(false), HeldOut::Worse);
-    }
-
-    #[test]
-    fn what_may_be_added_is_judged_by_itself() {
-        let all = Shown { closure_range: Some([0.5, 0.7]), ..shown(3.0, 1.5) };
-        assert!(all.closes_a_part(true) && !all.closes_a_part(false), "judged with what may not be added");
-        let part = |closure: f64, low: f64| Part {
-            after: 2.0e-3,
-            closure: Some(closure),
-            closure_range: Some([low, 0.9]),
-            unseen_after: None,
-        };
-        let divided = |part: Part| Shown { part: Some(part), ..all.clone() };
-        assert!(divided(part(0.4, 0.2)).closes_a_part(false));
-        assert!(!divided(part(0.1, 0.05)).closes_a_part(false), "too little to be a part");
-        assert!(!divided(part(0.4, -0.1)).closes_a_part(false), "by chance");
-        let unseen =
-            Unseen { what: "with a weight".to_owned(), rows: 20, before: 3e-3, after: 1e-3, floor: 5e-4 };
-        let there = |after: Option<f64>| Shown {
-            unseen: Some(unseen.clone()),
-            ..divided(Part { unseen_after: after, ..part(0.4, 0.2) })
-        };
-        assert!(there(Some(2e-3)).closes_a_part(false));
-        assert!(!there(Some(4e-3)).closes_a_part(false) && !there(None).closes_a_part(false), "not there");
     }
 
     #[test]

@@ -12,6 +12,7 @@ use crate::finding::{FORMAT, Finding, FloorSource, NamedEffect, Shown, Unexplain
 use crate::floor::Floor;
 use crate::marker;
 use crate::next;
+use crate::offer;
 use crate::options::Options;
 use crate::search::{self, Found};
 use crate::sentence;
@@ -86,7 +87,7 @@ fn found_in(
     if found.floor.source == FloorSource::Fitted {
         with_floor(&mut compared, &found.floor);
     }
-    let shown = if options.show && !found.assumed.effects.is_empty() {
+    let mut shown = if options.show && !found.assumed.effects.is_empty() {
         let one_by_one = search_s * kept.len() as f64 / 2.0 < PATIENCE_S;
         let stage = Stage::new(context, SEARCHED, SHOWN);
         let show = show::show(measurements, &compared, &found, options, one_by_one, &stage)?;
@@ -106,10 +107,11 @@ fn found_in(
     flag_outliers(&mut compared, &kept, &found);
     bounds::still_structured(&mut found, &used, &compared);
     bounds::bound_by_own_rows(&mut found, &used);
+    bounds::bound_by_held_out(&mut found, &used, &shown, &mut compared.warnings);
+    let partial = offer::offer(&mut found, &mut shown, &mut compared.warnings);
     if let Some(words) = no_help(&found, &shown, options) {
         compared.warnings.insert(0, words);
     }
-    let partial = bounds::bound_by_held_out(&mut found, &used, &shown, &mut compared.warnings);
     let servos = servos::servos(&used, &compared.floor, &found.assumed);
     let mut finding = assemble(measurements, compared, Some(found), shown, options);
     finding.next = next;

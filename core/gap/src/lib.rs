@@ -13,6 +13,7 @@ mod floor;
 mod floor_source;
 mod marker;
 mod next;
+mod offer;
 mod options;
 mod search;
 mod seen;

@@ -158,12 +158,12 @@ fn servos_that_hold_have_no_name() {
     }
 }
 
-/// Every place is off by an amount of its own.
-fn with_places_off(mut made: Measurements, seed: u64) -> Measurements {
+/// Every place is off by an amount of its own, up to this far in u and v.
+fn with_places_off(mut made: Measurements, most_m: f64, seed: u64) -> Measurements {
     let mut random = StdRng::seed_from_u64(seed);
     let cells = 1 + made.rows.iter().map(|row| row.cell).max().unwrap_or(0);
     let off: Vec<[f64; 2]> =
-        (0..cells).map(|_| [0, 1].map(|_| 3e-3 * (2.0 * random.random::<f64>() - 1.0))).collect();
+        (0..cells).map(|_| [0, 1].map(|_| most_m * (2.0 * random.random::<f64>() - 1.0))).collect();
     for row in &mut made.rows {
         (0..2).for_each(|c| row.measured[c] += off[row.cell][c]);
     }
@@ -176,7 +176,7 @@ fn what_may_be_added_is_offered_beside_a_fit_that_may_not() {
     let plan = Plan { places: 90, ..Plan::default() };
     let some = touches(&Plan { places: 1, repeats: 1, ..Plan::default() }, &[], 1);
     let far = present(&some, "tip-offset", "tip", &[0.06, 0.0, 0.0]);
-    let made = with_places_off(touches(&plan, &[elbow_zero(0.1), far], 9), 10);
+    let made = with_places_off(touches(&plan, &[elbow_zero(0.1), far], 9), 3e-3, 10);
     let finding = looked_at(&made, true);
     assert_eq!(finding.verdict, Verdict::NotInLibrary);
     let barred = finding.effects.iter().filter(|effect| effect.not_addable.is_some()).count();
@@ -189,9 +189,20 @@ fn what_may_be_added_is_offered_beside_a_fit_that_may_not() {
 }
 
 #[test]
+fn what_is_larger_than_plausible_is_offered_where_it_surely_helps() {
+    let plan = Plan { places: 90, ..Plan::default() };
+    let made = with_places_off(touches(&plan, &[elbow_zero(0.2)], 9), 2e-3, 10);
+    let finding = looked_at(&made, true);
+    assert_eq!(finding.verdict, Verdict::NotInLibrary);
+    assert!(finding.partial && !finding.addable().is_empty(), "{:?}", finding.shown);
+    let warned = finding.warnings.iter().any(|words| words.contains("by more than is plausible"));
+    assert!(warned, "{:?}", finding.warnings);
+}
+
+#[test]
 fn what_closes_a_part_beside_something_unknown_can_be_added_as_a_part() {
     let plan = Plan { places: 90, ..Plan::default() };
-    let made = with_places_off(touches(&plan, &[elbow_zero(0.1)], 9), 10);
+    let made = with_places_off(touches(&plan, &[elbow_zero(0.1)], 9), 3e-3, 10);
     let finding = looked_at(&made, true);
     assert_eq!(finding.verdict, Verdict::NotInLibrary);
     assert!(finding.partial, "{:?}", finding.shown);

@@ -163,7 +163,7 @@ mod tests {
                 title: "calibration of 31 pairs".to_owned(),
                 since: "2026-11-23 14:10".to_owned(),
                 error: "0.082 px".to_owned(),
-                against: "The calibration of the eyes does not hold any more: places are off by 1.2 cm near, 1.9 cm in the middle and 3.1 cm far. Calibrate the eyes again; the screen Drift says what has turned.".to_owned(),
+                against: "The calibration of the eyes does not hold any more: places are off by 12 mm near, 19 mm in the middle and 31 mm far. Calibrate the eyes again; the screen Drift says what has turned.".to_owned(),
             }],
             steps: (0..steps)
                 .map(|k| Step {

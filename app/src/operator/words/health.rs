@@ -98,8 +98,8 @@ pub struct NotOffered {
     pub may_be_judged_again: bool,
 }
 
-/// "0.2 cm near, 0.4 cm in the middle, 0.9 cm far".
+/// "2 mm near, 4 mm in the middle, 9 mm far".
 fn off(figures: &HealthFigures) -> String {
-    let [near, middle, far] = figures.off_m.map(format::cm);
+    let [near, middle, far] = figures.off_m.map(format::whole_mm);
     format!("{near} near, {middle} in the middle, {far} far")
 }

@@ -55,7 +55,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
 
 /// How well places are known with the correction, as it says itself.
 fn stated(half_m: [f64; 3]) -> String {
-    let [near, middle, far] = half_m.map(format::cm);
+    let [near, middle, far] = half_m.map(format::whole_mm);
     format!(
         "With the correction by time 95 % of places are stated to lie within {near} near, {middle} in the middle, {far} far \
          of where they come out."

@@ -215,9 +215,9 @@ impl EyesWorkflow {
 }
 
 fn does_not_hold(health: &EyesHealth) -> String {
-    let [near_cm, middle_cm, far_cm] = health.in_use.off_m.map(|off_m| 100.0 * off_m);
+    let [near_mm, middle_mm, far_mm] = health.in_use.off_m.map(|off_m| 1e3 * off_m);
     format!(
-        "The calibration of the eyes does not hold any more: places are off by {near_cm:.1} cm near, {middle_cm:.1} cm in \
-         the middle and {far_cm:.1} cm far. Calibrate the eyes again; the screen Drift says what has turned."
+        "The calibration of the eyes does not hold any more: places are off by {near_mm:.0} mm near, {middle_mm:.0} mm in \
+         the middle and {far_mm:.0} mm far. Calibrate the eyes again; the screen Drift says what has turned."
     )
 }

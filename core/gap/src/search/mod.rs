@@ -48,7 +48,7 @@ use explore::Explored;
 use finish::Finish;
 use library::Library;
 use look::Look;
-pub(crate) use naming::MOST_DIRT;
+pub(crate) use naming::{BEYOND_PLAUSIBLE, BOUND, MOST_DIRT};
 use refit::refit;
 pub(crate) use stated::Source;
 pub(crate) use unknown::RIVAL_P;

@@ -35,7 +35,10 @@ const CANCELLING_OF_EYES: f64 = 4.0;
 /// So many effects of the eyes that each do more than the whole gap are no coincidence.
 const MANY_CANCELLING: usize = 3;
 /// Beyond this many usual sizes a fit is at its bound.
-const BOUND: f64 = 3.0;
+pub(crate) const BOUND: f64 = 3.0;
+/// Why such a fit is not added.
+pub(crate) const BEYOND_PLAUSIBLE: &str =
+    "its fit lies beyond what is plausible for this effect, so something else is probably at work";
 /// One name stands for its class from this probability on.
 const ONE_NAME: f64 = 0.8;
 /// A gap of this size (floors) that gets no name is unexplained.
@@ -350,9 +353,7 @@ impl Evidence<'_> {
         let covariance =
             DMatrix::from_fn(own.len(), own.len(), |r, c| covariance[(r, c)] * typical[r] * typical[c]);
         let not_addable = if own.iter().any(|value| value.abs() > BOUND) {
-            Some(
-                "its fit lies beyond what is plausible for this effect, so something else is probably at work",
-            )
+            Some(BEYOND_PLAUSIBLE)
         } else if effect.is_of_a_set() {
             Some("it was so while that set was measured, which says nothing of any other time")
         } else {
