@@ -118,7 +118,7 @@ impl Candidate {
         let distance =
             ["very near", "near", "further away", "far away"][coverage::distance_bin(board, &self.place)];
         let tilt = Coverage::TILT_NAMES[coverage::tilt_bin(&self.place)];
-        format!("{where_to}, {distance} ({:.0} cm), {tilt}", self.place.distance_m * 100.0)
+        format!("{where_to}, {distance} ({:.0} mm), {tilt}", self.place.distance_m * 1e3)
     }
 }
 

@@ -485,7 +485,7 @@ fn a_calibration_that_does_not_hold_is_told_once() {
     // Its pace is that of this machine: no more than a small share of it.
     assert!(seconds_to_next(&mut desk) >= 120, "from then on it rests for two minutes at least");
     let [words] = &said[..] else { panic!("{said:?}") };
-    assert!(words.contains("does not hold any more") && words.contains("cm far"), "{words}");
+    assert!(words.contains("does not hold any more") && words.contains("mm far"), "{words}");
     assert!(!desk.view().health.judged.as_ref().expect("judged").in_use.is_good);
     assert_eq!(desk.view().step, StepState::Stale { why: words.clone() }, "it stays to be seen");
     // Who asks reads it where he has asked.
