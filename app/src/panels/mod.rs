@@ -32,6 +32,7 @@ mod probe;
 mod probe_state;
 mod rectified;
 mod residuals;
+pub(crate) mod rest;
 mod robot;
 mod scores;
 mod source_state;

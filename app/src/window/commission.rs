@@ -88,14 +88,14 @@ fn next(window: &PlumblineWindow, course: &Course, ui: &mut Ui, outbox: &mut Out
             let hover = format!("{}\n{keys} does the same", course.sentence);
             let resting = just_pressed.is_some() || window.commission_rest.is_on(ui.ctx());
             let button = ui.add_enabled(!resting, button).on_hover_text(hover);
-            let button = button.on_disabled_hover_text(super::rest::WHY);
+            let button = button.on_disabled_hover_text(crate::panels::rest::WHY);
             if button.clicked() {
                 outbox.act(Action::Commission(CommissionAction::Next));
             }
             if let Some(no) = otherwise(actions) {
                 ui.reset_style();
                 let button = ui.add_enabled(!resting, egui::Button::new(no.label()));
-                if button.on_disabled_hover_text(super::rest::WHY).clicked() {
+                if button.on_disabled_hover_text(crate::panels::rest::WHY).clicked() {
                     outbox.act(no);
                 }
             }

@@ -153,7 +153,7 @@ fn next_button(view: &View, guidance: &Guidance, look: Look, ui: &mut Ui, outbox
     ui.spacing_mut().button_padding.x = space::M;
     let button = ui.add_enabled(refusal.is_none() && !look.resting, button);
     let button = button.on_hover_text(format!("{keys} does the same"));
-    let why = refusal.unwrap_or_else(|| super::rest::WHY.into());
+    let why = refusal.unwrap_or_else(|| crate::panels::rest::WHY.into());
     if button.on_disabled_hover_text(why).clicked() {
         outbox.act(next.action);
     }

@@ -4,10 +4,10 @@ use egui::{Button, Label, Margin, Panel, Ui};
 use plumbline_engine::View;
 use plumbline_widgets::theme::{self, space};
 
-use super::rest::Rest;
 use crate::operator::actions::undo::undo;
 use crate::operator::words::capitalized;
 use crate::operator::{Action, Outbox, Screen, shortcut_text};
+use crate::panels::rest::Rest;
 
 pub(super) const HEIGHT: f32 = 40.0;
 

@@ -8,8 +8,9 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use nalgebra::Point3;
 use plumbline::{PlumblineWindow, Screen, WindowSettings};
 use plumbline_engine::view::{
-    BetweenSteps, Connection, DetectView, GraspHand, GraspMethod, GraspPhase, GraspRun, GraspStep, GraspView,
-    LampState, MotionState, ObjectView, RobotView, TouchPhase, TouchView, ToyView, TwinView,
+    BetweenSteps, Connection, DetectView, Gate, GateState, GraspHand, GraspMethod, GraspPhase, GraspRun,
+    GraspStep, GraspView, LampState, MotionState, ObjectView, RobotView, TouchPhase, TouchView, ToyView,
+    TwinView,
 };
 use plumbline_engine::{Command, GraspCommand, GraspTarget, View};
 use plumbline_model::frame::Point;
@@ -105,6 +106,15 @@ fn toys_that_made_room_are_not_simply_missing() {
     assert!(says(&window, room));
     click(&mut window, "Go to Robot");
     assert!(shows(&window, "Poses") && !shows(&window, room));
+    // A doubt does not hide that nothing lies there.
+    let doubtful = |mut view: View| {
+        let gate = Gate { name: "Places", state: GateState::Doubtful, text: "Not calibrated.".to_owned() };
+        let grasp = GraspView { gates: Arc::from([gate]), ..(*view.grasp).clone() };
+        view.grasp = Arc::new(grasp);
+        view
+    };
+    let window = on_grasp(&Fake::over(doubtful(view(&["tomato"]))));
+    assert!(says(&window, room) && !says(&window, "Ready, in doubt"));
     // A run that is only paused keeps its room.
     let touch = TouchView { phase: TouchPhase::Paused { why: None }, ..TouchView::default() };
     let paused = View { touch: Arc::new(touch), ..view(&["tomato"]) };

@@ -124,6 +124,29 @@ fn what_was_put_in_use_last_of_a_kind_is_taken_back_and_an_earlier_one_is_used_a
 }
 
 #[test]
+fn who_clicks_twice_takes_one_result_back_and_not_the_one_that_slid_under_the_pointer() {
+    let view = |timeline| View { timeline: Arc::new(timeline), ..made_up::everything() };
+    let (fake, mut window) = window_of(results());
+    // Frames are a quarter of a second apart.
+    let click = |window: &mut Harness<'_, PlumblineWindow>| {
+        window.get_all_by_label_contains("Undo: ").next().expect("a button").click();
+        window.run_steps(1);
+        fake.take_sent().len()
+    };
+    assert_eq!((click(&mut window), click(&mut window)), (1, 0), "once is meant");
+    window.run_steps(3);
+    // It is done: a row more stands on top, and every other one has slid down.
+    let mut entries = results().entries.to_vec();
+    let taken_back = entry(entries.len() as u64 + 1, Subject::Screen, "as it was built", [None, None]);
+    entries.push(TimelineEntry { kind: EntryKind::TakenBack, ..taken_back });
+    fake.show(view(TimelineView { entries: entries.into_iter().collect(), ..results() }));
+    window.run_steps(1);
+    assert_eq!(click(&mut window), 0, "what lies there is another one now");
+    window.run_steps(3);
+    assert_eq!(click(&mut window), 1, "and does what it says once that was seen");
+}
+
+#[test]
 fn what_was_only_measured_stands_there_with_its_share_and_has_no_undo() {
     let share = |share| Some(Figure::Share(share));
     let kinds = [

@@ -6,7 +6,7 @@ use egui::{Event, Modifiers, PointerButton, Pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use plumbline::{PlumblineWindow, Screen, ThemeChoice, WindowSettings};
-use plumbline_engine::view::{ContactSource, TouchOutcome, TouchPhase, TouchView};
+use plumbline_engine::view::{ContactSource, TouchCounts, TouchOutcome, TouchPhase, TouchView};
 use plumbline_engine::{Command, ScreenWindow, TouchCommand, View};
 use plumbline_model::touch_plan::{Finger, Pattern, PlanOptions, Purpose, TouchArea};
 
@@ -116,6 +116,20 @@ fn fewer_touches_than_models_need_lead_to_the_gap() {
     assert!(says(&window, "fewer than the 20 that M2 and M3 need"));
     press_next(&mut window, "Go to Gap");
     assert_eq!(sent(&fake), []);
+    // A run that ended before its first touch has nothing for the gap or the models.
+    let (fake, mut window) = self::window(with_touch(after(0, TouchPhase::Finished)));
+    assert!(says(&window, "No target was touched") && !shows(&window, "Go to Models"));
+    press_next(&mut window, "Plan a first calibration");
+    assert_eq!(sent(&fake).len(), 1);
+}
+
+#[test]
+fn once_no_touch_is_left_nothing_is_to_be_paused() {
+    let doing = "going home, away from the screen".to_owned();
+    let (fake, mut window) = window(with_touch(after(200, TouchPhase::Running { number: None, doing })));
+    assert!(says(&window, "No touch is left: going home"));
+    click(&mut window, "Pause");
+    assert_eq!(sent(&fake), []);
 }
 
 #[test]
@@ -166,7 +180,9 @@ fn the_left_finger_is_said_and_its_touches_lead_to_the_gap() {
 
     let (_, window) = self::window(with_touch(planned(left(PlanOptions::quick(area())))));
     assert!(says(&window, "The left arm touches the glass") && says(&window, "the right arm stay"));
-    let done = TouchView { phase: TouchPhase::Finished, ..planned(left(PlanOptions::quick(area()))) };
+    let touched = planned(left(PlanOptions::quick(area())));
+    let counts = TouchCounts { touched: 15, ..touched.counts };
+    let done = TouchView { phase: TouchPhase::Finished, counts, ..touched };
     let (_, window) = self::window(with_touch(done));
     assert!(says(&window, "of the left finger") && shows(&window, "Go to Gap"));
     assert!(!shows(&window, "Train models") && !shows(&window, "Go to Models"));

@@ -177,6 +177,9 @@ impl TouchAction {
             Self::Plan(_) => plan_refusal(view),
             Self::Start => start_refusal(view),
             Self::Resume => resume_refusal(view),
+            Self::Pause if matches!(touch.phase, TouchPhase::Running { number: None, .. }) => {
+                Some("no touch is left, and the run ends by itself; Esc or space stops the arm".into())
+            }
             Self::Pause => {
                 when(matches!(touch.phase, TouchPhase::Running { .. }), "nothing is being touched")
             }

@@ -19,7 +19,7 @@ use crate::operator::{Action, Preset, Screen, TouchAction, is_under_way, needs_w
 pub(super) fn touch(view: &View) -> Guidance {
     let touch = &view.touch;
     match &touch.phase {
-        TouchPhase::Running { doing, .. } => running(touch, doing),
+        TouchPhase::Running { number, doing } => running(touch, number.is_some(), doing),
         TouchPhase::Waiting { what, prepare } => waiting(what, prepare.is_some()),
         _ => {
             if let Some(trouble) = robot::trouble(&view.robot)
@@ -49,12 +49,14 @@ fn standing(view: &View) -> Guidance {
     }
 }
 
-fn running(touch: &TouchView, doing: &str) -> Guidance {
+fn running(touch: &TouchView, is_left: bool, doing: &str) -> Guidance {
     let (done, wanted) = (done_of(touch.counts), wanted(touch.counts));
     let left = touch.remaining.map_or_else(String::new, |left| format!(" {}.", format::time_left(left)));
     let held = held(touch.held);
-    say(format!("{done} of {wanted} done. The arm is {doing}.{left} Esc or space stops.{held}"))
-        .then("Pause", Action::Touch(TouchAction::Pause))
+    let guidance =
+        say(format!("{done} of {wanted} done. The arm is {doing}.{left} Esc or space stops.{held}"));
+    // Once no touch is left the run ends by itself.
+    if is_left { guidance.then("Pause", Action::Touch(TouchAction::Pause)) } else { guidance }
 }
 
 /// That the arm stood still by itself, and why: " It held 3 times because …"; empty where it did not.
@@ -191,12 +193,17 @@ fn finished(view: &View) -> Guidance {
                 .then("Plan a first calibration", Action::Touch(TouchAction::Plan(Preset::First)))
         }
         Some(Purpose::Check) => checked(view, &touched),
+        Some(Purpose::Train) | None if touch.counts.touched == 0 => {
+            say("No target was touched, so there is nothing to learn from. Touch targets to train models.")
+                .warn()
+                .then("Plan a first calibration", Action::Touch(TouchAction::Plan(Preset::First)))
+        }
         Some(Purpose::Train) if finger == Some(Finger::Left) => {
-            say(format!("{touched} of the left finger are on disk. Next: look what makes its arm miss."))
+            say(format!("{touched} of the left finger are on disk. Next: find what makes its arm miss."))
                 .then("Go to Gap", Action::Go(Screen::Gap))
         }
         Some(Purpose::Train) | None if touch.counts.touched < FEWEST_FOR_A_NETWORK => say(format!(
-            "{touched} are on disk, fewer than the {FEWEST_FOR_A_NETWORK} that M2 and M3 need. Next: look what makes the arm miss."
+            "{touched} are on disk, fewer than the {FEWEST_FOR_A_NETWORK} that M2 and M3 need. Next: find what makes the arm miss."
         ))
         .then("Go to Gap", Action::Go(Screen::Gap)),
         Some(Purpose::Train) | None => say(format!("{touched} are on disk.{held} Next: train models on them."))

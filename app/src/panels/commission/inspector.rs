@@ -24,7 +24,8 @@ pub fn show(ui: &mut Ui, view: &View, outbox: &mut Outbox) {
     ui.add_space(space::XS);
     note(ui, "Counted while the program is open, and kept: after a restart it goes on.");
     group_heading(ui, "This way");
-    for action in [CommissionAction::Leave, CommissionAction::StartAnew] {
+    // Once it is left the bar above goes and all moves up: what ends all lies above, never under the pointer.
+    for action in [CommissionAction::StartAnew, CommissionAction::Leave] {
         let why = action.refusal(view);
         let button = ui.add_enabled(why.is_none(), Button::new(action.label()));
         if button.on_disabled_hover_text(why.unwrap_or_default()).clicked() {

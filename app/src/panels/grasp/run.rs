@@ -111,12 +111,11 @@ fn gates(ui: &mut Ui, view: &View) {
     }
     let tokens = theme::tokens(ui);
     if grasp.trouble().is_none() && grasp.run.is_none() {
-        match grasp.gates.iter().find(|gate| gate.state == GateState::Doubtful) {
-            None => match things::nothing_to_hold(view) {
-                Some(why) => ui.label(theme::weak(ui, why)),
-                None => ui.label(RichText::new("Ready.").color(Role::Accepted.color(tokens))),
-            },
-            Some(doubt) => {
+        let doubt = grasp.gates.iter().find(|gate| gate.state == GateState::Doubtful);
+        match (things::nothing_to_hold(view), doubt) {
+            (Some(why), _) => ui.label(theme::weak(ui, why)),
+            (None, None) => ui.label(RichText::new("Ready.").color(Role::Accepted.color(tokens))),
+            (None, Some(doubt)) => {
                 let text = format!("Ready, in doubt: {}", doubt.text);
                 ui.label(RichText::new(text).color(Role::Warning.color(tokens)))
             }

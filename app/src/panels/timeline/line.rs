@@ -10,6 +10,7 @@ use plumbline_widgets::theme::{self, Role, space};
 use crate::operator::actions::timeline::{take_back, use_again};
 use crate::operator::words::timeline as words;
 use crate::operator::words::{capitalized, clock};
+use crate::panels::rest::WHY;
 use crate::panels::{PanelContext, padded};
 
 const ROW_HEIGHT: f32 = 46.0;
@@ -29,6 +30,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         EmptyState::empty(Message::new("Nothing was put in use yet", text)).show(ui);
         return;
     }
+    cx.state.timeline.rest.see(ui.ctx(), timeline.entries.last().map(|entry| entry.number));
     padded(ui, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
@@ -144,12 +146,15 @@ fn change(view: &View, entry: &TimelineEntry) -> Option<Change> {
 
 fn change_button(ui: &mut Ui, cx: &mut PanelContext<'_>, entry: &TimelineEntry, change: Change) {
     let Change { command, label, help } = change;
-    let button = ui.add(Button::new(RichText::new(label).text_style(TextStyle::Small)));
+    let rests = cx.state.timeline.rest.is_on(ui.ctx());
+    let button = Button::new(RichText::new(label).text_style(TextStyle::Small));
+    let button = ui.add_enabled(!rests, button);
     // Each says which one it is of to whoever does not see the row.
     button.widget_info(|| {
-        WidgetInfo::labeled(egui::Role::Button, true, format!("{label}: {}", words::title(entry)))
+        WidgetInfo::labeled(egui::Role::Button, !rests, format!("{label}: {}", words::title(entry)))
     });
-    if button.on_hover_text(help).clicked() {
+    if button.on_hover_text(help).on_disabled_hover_text(WHY).clicked() {
+        cx.state.timeline.rest.begin(ui.ctx());
         cx.outbox.send(command);
     }
 }

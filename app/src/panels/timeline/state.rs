@@ -1,10 +1,14 @@
 //! What is chosen on the timeline.
 
+use crate::panels::rest::Rest;
+
 /// How the timeline is looked at.
-#[derive(Clone, Debug, Default)]
+#[derive(Default)]
 pub struct TimelinePanels {
     /// Numbers of the entries that are compared, at most two; the one chosen first stands first.
     pub chosen: Vec<u64>,
+    /// A change puts a row on top, and every other one below: what was pressed is not what lies there then.
+    pub rest: Rest<u64>,
 }
 
 impl TimelinePanels {

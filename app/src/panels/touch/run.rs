@@ -130,7 +130,8 @@ fn finished(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         action_button(ui, cx, TouchAction::Close, "Close the run");
         // Models learn from touches of the right finger that were made for them.
         let teaches = |plan: &PlanOptions| plan.finger == Finger::Right && plan.purpose == Purpose::Train;
-        let leads_to_models = cx.view.touch.plan.as_ref().is_some_and(|plan| teaches(&plan.options));
+        let leads_to_models =
+            counts.touched > 0 && cx.view.touch.plan.as_ref().is_some_and(|plan| teaches(&plan.options));
         if leads_to_models && ui.button("Go to Models").clicked() {
             cx.outbox.act(Action::Go(Screen::Models));
         }

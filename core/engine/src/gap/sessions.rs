@@ -23,10 +23,14 @@ const TABLES: [&str; 3] = [names::TOUCHES, names::POSES, names::LOCALIZATIONS];
 /// A sentence, when the folder cannot be read.
 pub fn list(folder: &Path) -> Result<Vec<GapSession>, Unread> {
     let folders = folders(folder)?.into_iter();
-    let measured = folders.filter(|path| TABLES.iter().any(|table| path.join(table).is_file()));
-    let mut sessions: Vec<GapSession> = measured.map(listed).collect();
+    let mut sessions: Vec<GapSession> = folders.filter(|path| is_measured(path)).map(listed).collect();
     sessions.sort_by(|a, b| (b.started, &b.folder).cmp(&(a.started, &a.folder)));
     Ok(sessions)
+}
+
+/// Whether a session has a table to compare: a run that ended before its first touch has none.
+pub fn is_measured(session: &Path) -> bool {
+    TABLES.iter().any(|table| session.join(table).is_file())
 }
 
 /// A session as it stands in the list.

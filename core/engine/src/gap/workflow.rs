@@ -10,7 +10,7 @@ use plumbline_report::ReportContext;
 
 use super::command::{GapCommand, GapModel};
 use super::model;
-use super::sessions::with_finished;
+use super::sessions::{is_measured, with_finished};
 use super::store::{KeptSession, Named, Store};
 use super::view::{FindingEntry, GapModelView, GapSession, ShownFinding};
 use super::work::{Context, GapResult, GapWork, Restored};
@@ -229,7 +229,9 @@ impl GapWorkflow {
 
     /// A run of touches is finished: it is compared next, and is in the list.
     pub fn touched(&mut self, session: &Path, context: &mut Context<'_>) {
-        self.chosen = with_finished(std::mem::take(&mut self.chosen), session);
+        if is_measured(session) {
+            self.chosen = with_finished(std::mem::take(&mut self.chosen), session);
+        }
         self.list(context);
     }
 

@@ -271,7 +271,7 @@ fn running(run: &Run) -> TouchPhase {
             (Some(number), format!("writing touch {number} to disk"))
         }
     };
-    let holds = run.pause || !matches!(run.phase, Phase::Working | Phase::Finished);
+    let holds = run.pause && !run.only_leaves() || !matches!(run.phase, Phase::Working | Phase::Finished);
     let doing = if holds { format!("{doing}, then it pauses") } else { doing };
     TouchPhase::Running { number, doing }
 }

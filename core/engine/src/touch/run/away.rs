@@ -43,7 +43,7 @@ impl Run {
     }
 
     /// No touch is left and everything lies as it lay: only the way home is.
-    pub(super) fn only_leaves(&self) -> bool {
+    pub(in crate::touch) fn only_leaves(&self) -> bool {
         self.next().is_none() && self.progress.prepared == AS_IT_LIES
     }
 

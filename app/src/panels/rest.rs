@@ -4,10 +4,10 @@
 /// For so long, s.
 const REST_S: f64 = 0.5;
 /// Said where the pointer rests on such a button.
-pub(super) const WHY: &str = "It meant something else a moment ago: wait half a second";
+pub(crate) const WHY: &str = "It meant something else a moment ago: wait half a second";
 
 /// What a button means, and since when.
-pub(super) struct Rest<T> {
+pub(crate) struct Rest<T> {
     meaning: Option<T>,
     since_s: f64,
     until_s: f64,
@@ -23,7 +23,7 @@ impl<T> Default for Rest<T> {
 impl<T: PartialEq> Rest<T> {
     /// Takes in what the button means in this frame; `None`: there is none. What the window opens with
     /// does not rest.
-    pub(super) fn see(&mut self, ctx: &egui::Context, meaning: Option<T>) {
+    pub(crate) fn see(&mut self, ctx: &egui::Context, meaning: Option<T>) {
         let now_s = ctx.input(|input| input.time);
         if self.meaning != meaning {
             self.meaning = meaning;
@@ -44,24 +44,24 @@ impl<T: PartialEq> Rest<T> {
     }
 
     /// It was pressed: what it means next is not pressed by the same hand.
-    pub(super) fn begin(&mut self, ctx: &egui::Context) {
+    pub(crate) fn begin(&mut self, ctx: &egui::Context) {
         self.since_s = ctx.input(|input| input.time);
         self.until_s = self.since_s + REST_S;
         ctx.request_repaint_after_secs(REST_S as f32);
     }
 
     /// It was pressed all the same, by a key: whoever hammers has not seen yet what it means now.
-    pub(super) fn go_on(&mut self, ctx: &egui::Context) {
+    pub(crate) fn go_on(&mut self, ctx: &egui::Context) {
         self.until_s = ctx.input(|input| input.time) + REST_S;
     }
 
     /// The same for what ends something: pressing it does not make it rest for longer.
-    pub(super) fn is_on_at_first(&self, ctx: &egui::Context) -> bool {
+    pub(crate) fn is_on_at_first(&self, ctx: &egui::Context) -> bool {
         ctx.input(|input| input.time) < self.since_s + REST_S
     }
 
     /// Whether it is not to be pressed yet.
-    pub(super) fn is_on(&self, ctx: &egui::Context) -> bool {
+    pub(crate) fn is_on(&self, ctx: &egui::Context) -> bool {
         ctx.input(|input| input.time) < self.until_s
     }
 }
