@@ -1,7 +1,8 @@
 //! What to do next with touching the screen: one button, named by what it does.
 
 use plumbline_engine::view::{
-    Figure, PlanView, StepState, Subject, TouchCounts, TouchFigures, TouchOutcome, TouchPhase, TouchView,
+    Connection, Figure, PlanView, StepState, Subject, TouchCounts, TouchFigures, TouchOutcome, TouchPhase,
+    TouchView,
 };
 use plumbline_engine::{Correction, View};
 use plumbline_model::touch_plan::{Finger, Purpose};
@@ -42,7 +43,7 @@ fn standing(view: &View) -> Guidance {
             say("The touch window shows the targets and feels the touches: it has to fill the touch monitor.")
                 .then("Open the touch window", Action::Touch(TouchAction::ToggleWindow))
         }
-        TouchPhase::Planned => touch.plan.as_deref().map_or_else(|| first(view), |plan| planned(touch, plan)),
+        TouchPhase::Planned => touch.plan.as_deref().map_or_else(|| first(view), |plan| planned(view, plan)),
         TouchPhase::Paused { why } => paused(touch, why.as_deref()),
         TouchPhase::Finished => finished(view),
         _ => first(view),
@@ -108,7 +109,8 @@ fn places(touch: &TouchView) -> usize {
     places.len()
 }
 
-fn planned(touch: &TouchView, plan: &PlanView) -> Guidance {
+fn planned(view: &View, plan: &PlanView) -> Guidance {
+    let touch = &view.touch;
     if plan.reachable == 0 {
         return say("The arm reaches none of these targets: choose another area.").warn();
     }
@@ -121,7 +123,16 @@ fn planned(touch: &TouchView, plan: &PlanView) -> Guidance {
         let corners = Action::Touch(TouchAction::Plan(Preset::Corners));
         return say(text).warn().then("Plan to touch the corners", corners);
     }
-    say(what_moves(plan)).then(start_label(plan), Action::Touch(TouchAction::Start))
+    say(format!("{}{}", what_moves(plan), makes_room(view)))
+        .then(start_label(plan), Action::Touch(TouchAction::Start))
+}
+
+/// What goes from the twin's table meanwhile.
+fn makes_room(view: &View) -> &'static str {
+    let twin = &view.twin;
+    let is_twin = twin.running && matches!(view.robot.connection, Connection::Connected { twin: true, .. });
+    let stands = twin.board.is_some() || twin.toys.iter().any(|toy| toy.place.is_some());
+    if is_twin && stands { " What lies on the screen or near it makes room." } else { "" }
 }
 
 /// What starting does: "Touch 80 targets".

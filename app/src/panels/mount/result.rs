@@ -33,10 +33,11 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
                 ui.add_space(space::XS);
             }
             figures(ui, mount);
-            table(ui, mount);
+            // What the verdict rests on is read before its figures.
             if let Some(proposal) = &mount.proposal {
                 notes(ui, proposal);
             }
+            table(ui, mount);
             buttons(ui, cx);
         });
     });

@@ -102,7 +102,9 @@ fn fit(ui: &mut Ui, left_out: Option<&str>, rms_px: Option<f64>) {
             ui.add(egui::Label::new(text).truncate()).on_hover_text(why);
         }
         (None, Some(rms)) => {
-            ui.add(egui::Label::new(format::px(rms)).truncate());
+            // A row has room for two digits; that one view fits a little better says nothing.
+            let rms = format!("{} px", format::significant(rms, 2));
+            ui.add(egui::Label::new(rms).truncate());
         }
         (None, None) => {
             ui.label(egui::RichText::new("seen").color(tokens.text_weak));

@@ -98,7 +98,8 @@ impl Lab {
     fn calibrated(&mut self) {
         self.around.eyes = Some(self.made(CommissionFigure::Pixels(0.1)));
         self.around.mount = Some(self.made(CommissionFigure::Pixels(0.2)));
-        self.around.screen = Some(self.made(CommissionFigure::Placed { rms_m: 1e-3, touches: 8 }));
+        self.around.screen =
+            Some(self.made(CommissionFigure::Placed { rms_m: 1e-3, touches: 8, is_doubtful: false }));
     }
 
     fn run(&self, name: &str, purpose: Purpose, contacts: usize, is_finished: bool) -> RunStanding {

@@ -146,6 +146,8 @@ pub enum CommissionFigure {
         rms_m: f64,
         /// Touches.
         touches: usize,
+        /// Something speaks against it.
+        is_doubtful: bool,
     },
     /// Touches.
     Touches(usize),

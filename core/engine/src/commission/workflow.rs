@@ -77,7 +77,7 @@ impl CommissionWorkflow {
         if !is_written {
             let kept = Box::new(kept.clone());
             let work = CommissionWork::Keep { file: self.file.clone(), kept: kept.clone() };
-            self.writing = Some((context.start(work), kept));
+            self.writing = Some((context.start_by_itself(work), kept));
         }
     }
 

@@ -48,7 +48,8 @@ fn of_mount(calibration: &MountCalibration) -> CommissionDone {
 }
 
 fn of_screen(placement: &ScreenPlacement) -> CommissionDone {
-    let figure = CommissionFigure::Placed { rms_m: placement.rms_m, touches: placement.touches };
+    let is_doubtful = !placement.doubts().is_empty();
+    let figure = CommissionFigure::Placed { rms_m: placement.rms_m, touches: placement.touches, is_doubtful };
     CommissionDone { at: Some(placement.at), figure }
 }
 

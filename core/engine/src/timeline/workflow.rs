@@ -90,7 +90,7 @@ impl TimelineWorkflow {
             return;
         };
         let work = TimelineWork::Keep { file: self.file.clone(), entries: entries.clone() };
-        self.writing = Some(context.start(work));
+        self.writing = Some(context.start_by_itself(work));
         self.is_behind = false;
     }
 }

@@ -69,8 +69,9 @@ pub fn done_in_words(figure: &CommissionFigure) -> String {
     match figure {
         CommissionFigure::Unknown => "done".to_owned(),
         CommissionFigure::Pixels(px) => format!("{} left over in the images", format::px(*px)),
-        CommissionFigure::Placed { rms_m, touches } => {
-            format!("{}, which agree to {}", format::count(*touches, "touch"), format::mm(*rms_m))
+        CommissionFigure::Placed { rms_m, touches, is_doubtful } => {
+            let doubtful = if *is_doubtful { "doubtful: " } else { "" };
+            format!("{doubtful}{}, which agree to {}", format::count(*touches, "touch"), format::mm(*rms_m))
         }
         CommissionFigure::Touches(touches) => format::count(*touches, "touch"),
         CommissionFigure::Effects(effects) if effects.is_empty() => {
