@@ -6,8 +6,11 @@ use egui::{Event, Modifiers, PointerButton, Pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use plumbline::{PlumblineWindow, Screen, ThemeChoice, WindowSettings};
-use plumbline_engine::view::{ContactSource, TouchCounts, TouchOutcome, TouchPhase, TouchView};
+use plumbline_engine::view::{
+    Connection, ContactSource, RobotView, TouchCounts, TouchOutcome, TouchPhase, TouchView, ToyView, TwinView,
+};
 use plumbline_engine::{Command, ScreenWindow, TouchCommand, View};
+use plumbline_model::frame::Point;
 use plumbline_model::touch_plan::{Finger, Pattern, PlanOptions, Purpose, TouchArea};
 
 use crate::fake::{Fake, click, says, shows};
@@ -121,6 +124,20 @@ fn fewer_touches_than_models_need_lead_to_the_gap() {
     assert!(says(&window, "No target was touched") && !shows(&window, "Go to Models"));
     press_next(&mut window, "Plan a first calibration");
     assert_eq!(sent(&fake).len(), 1);
+}
+
+#[test]
+fn a_plan_says_that_the_table_of_the_twin_is_cleared() {
+    let on_table = |place| {
+        let toy = ToyView { name: "tomato".to_owned(), place, radius_m: 0.03, rgb: [200, 40, 30] };
+        let twin = TwinView { running: true, toys: vec![toy], board: None, ..TwinView::default() };
+        let connection = Connection::Connected { to: "lab".to_owned(), twin: true };
+        let robot = Arc::new(RobotView { connection, ..connected() });
+        window(View { twin: Arc::new(twin), robot, ..with_touch(first_plan()) }).1
+    };
+    let said = "What lies on the screen or near it makes room.";
+    assert!(says(&on_table(Some(Point::new(0.4, 0.0, 0.1))), said));
+    assert!(!says(&on_table(None), said), "nothing lies there");
 }
 
 #[test]

@@ -107,6 +107,14 @@ mod tests {
     use super::*;
 
     #[test]
+    fn what_was_doubtful_when_it_was_accepted_stays_so() {
+        let said =
+            |is_doubtful| done_in_words(&CommissionFigure::Placed { rms_m: 5.8e-3, touches: 4, is_doubtful });
+        assert_eq!(said(true), "doubtful: 4 touches, which agree to 5.80 mm");
+        assert_eq!(said(false), "4 touches, which agree to 5.80 mm");
+    }
+
+    #[test]
     fn views_are_counted_of_all_that_are_planned_until_the_last() {
         use std::sync::Arc;
 
