@@ -1,8 +1,7 @@
 //! What to do next with touching the screen: one button, named by what it does.
 
 use plumbline_engine::view::{
-    Connection, Figure, PlanView, StepState, Subject, TouchCounts, TouchFigures, TouchOutcome, TouchPhase,
-    TouchView,
+    Figure, PlanView, StepState, Subject, TouchCounts, TouchFigures, TouchOutcome, TouchPhase, TouchView,
 };
 use plumbline_engine::{Correction, View};
 use plumbline_model::touch_plan::{Finger, Purpose};
@@ -13,6 +12,7 @@ use super::onward::to_grasping;
 use super::robot;
 use super::sentence::{Guidance, say};
 use crate::operator::snapshot::models::FEWEST_FOR_A_NETWORK;
+use crate::operator::words::grasp::is_on_twin;
 use crate::operator::words::proof::{Proof, Worth, model_was_better};
 use crate::operator::words::{self, capitalized};
 use crate::operator::{Action, Preset, Screen, TouchAction, is_under_way, needs_window};
@@ -130,9 +130,8 @@ fn planned(view: &View, plan: &PlanView) -> Guidance {
 /// What goes from the twin's table meanwhile.
 fn makes_room(view: &View) -> &'static str {
     let twin = &view.twin;
-    let is_twin = twin.running && matches!(view.robot.connection, Connection::Connected { twin: true, .. });
     let stands = twin.board.is_some() || twin.toys.iter().any(|toy| toy.place.is_some());
-    if is_twin && stands { " What lies on the screen or near it makes room." } else { "" }
+    if is_on_twin(view) && stands { " What lies on the screen or near it makes room." } else { "" }
 }
 
 /// What starting does: "Touch 80 targets".

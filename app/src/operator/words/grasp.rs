@@ -38,14 +38,22 @@ pub fn object_of(grasp: &GraspView) -> String {
     grasp.target.class.as_ref().map_or_else(|| "what is seen best".to_owned(), |class| class.to_lowercase())
 }
 
+/// Whether the robot is the twin that runs.
+pub fn is_on_twin(view: &View) -> bool {
+    view.twin.running && matches!(view.robot.connection, Connection::Connected { twin: true, .. })
+}
+
+/// Whether a hand can hold what has this name.
+pub fn can_be_held(view: &View, name: &str) -> bool {
+    view.grasp.classes.iter().any(|class| class.eq_ignore_ascii_case(name))
+}
+
 /// Why no toy that a hand can hold lies on the twin's table although none was put away by the operator, and when they come
 /// back; `None`: one does, or touches are not the reason, or the robot is not the twin.
 pub fn made_room(view: &View) -> Option<String> {
     let twin = &view.twin;
-    let is_there = twin.running && matches!(view.robot.connection, Connection::Connected { twin: true, .. });
-    let can_be_held = |name: &str| view.grasp.classes.iter().any(|class| class.eq_ignore_ascii_case(name));
     let mut standing = twin.toys.iter().filter(|toy| toy.place.is_some());
-    let is_empty = is_there && !standing.any(|toy| can_be_held(&toy.name));
+    let is_empty = is_on_twin(view) && !standing.any(|toy| can_be_held(view, &toy.name));
     let toys: Vec<&str> = twin.made_room.iter().map(String::as_str).collect();
     (is_empty && !toys.is_empty()).then(|| {
         let listed = super::capitalized(&plumbline_model::listed(&toys));

@@ -7,7 +7,7 @@ use plumbline_engine::{GraspCommand, GraspTarget, View};
 use plumbline_widgets::scene3d::{self, Line, PickId, Picked, Scene, Scene3dResponse, Tint};
 
 use crate::operator::Screen;
-use crate::operator::words::grasp::made_room;
+use crate::operator::words::grasp::{can_be_held, made_room};
 use crate::panels::PanelContext;
 use crate::panels::objects::found;
 use crate::panels::objects::state::ObjectsPanels;
@@ -101,8 +101,8 @@ pub fn nothing_to_hold(view: &View) -> Option<String> {
     seen.retain(|name| !name.ends_with("Hand"));
     seen.sort_unstable();
     seen.dedup();
-    let is_held = |name: &&str| view.grasp.classes.iter().any(|class| class.eq_ignore_ascii_case(name));
-    let (without_place, not_held): (Vec<&str>, Vec<&str>) = seen.into_iter().partition(is_held);
+    let (without_place, not_held): (Vec<&str>, Vec<&str>) =
+        seen.into_iter().partition(|name| can_be_held(view, name));
     let listed = |names: &[&str]| plumbline_model::listed(names).to_lowercase();
     Some(match (without_place.is_empty(), not_held.is_empty()) {
         (false, _) => format!("Seen, but not where on the table: {}.", listed(&without_place)),
