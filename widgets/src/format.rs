@@ -17,7 +17,7 @@ const MOST_DECIMALS: i32 = 4;
 pub enum Quantity {
     /// Meters in, mm on screen: lengths, errors, positions.
     Length,
-    /// Meters in, m on screen: distances from the eyes, scales of depth maps.
+    /// Meters in, whole mm on screen: distances from the eyes, scales of depth maps.
     Depth,
     /// Radians in, degrees on screen.
     Angle,
@@ -41,8 +41,7 @@ impl Quantity {
     /// The unit as it stands on screen; empty for plain numbers.
     pub fn unit(self) -> &'static str {
         match self {
-            Self::Length => "mm",
-            Self::Depth => "m",
+            Self::Length | Self::Depth => "mm",
             Self::Angle => "°",
             Self::Pixels => "px",
             Self::Time => "ms",
@@ -57,10 +56,10 @@ impl Quantity {
     /// The SI value in the unit on screen.
     pub fn on_screen(self, si: f64) -> f64 {
         match self {
-            Self::Length | Self::Time | Self::LengthPerPixel => si * 1e3,
+            Self::Length | Self::Depth | Self::Time | Self::LengthPerPixel => si * 1e3,
             Self::Angle => si.to_degrees(),
             Self::Ratio => si * 1e2,
-            Self::Depth | Self::Pixels | Self::Temperature | Self::Rate | Self::Number => si,
+            Self::Pixels | Self::Temperature | Self::Rate | Self::Number => si,
         }
     }
 
@@ -68,6 +67,9 @@ impl Quantity {
     /// is measured finer.
     pub fn number(self, si: f64) -> String {
         let value = self.on_screen(si);
+        if self == Self::Depth {
+            return fixed(value, 0);
+        }
         let is_small = matches!(self, Self::Length) && value.abs() < 1.0;
         significant(value, if is_small { 2 } else { 3 })
     }
@@ -135,8 +137,8 @@ pub fn whole_mm_with(length_m: f64, sigma_m: f64) -> String {
     format!("{} ± {}", fixed(1e3 * length_m, 0), whole_mm(sigma_m.abs().max(1e-3)))
 }
 
-/// Meters: `0.450 m`. For distances from the eyes; errors and positions are in [`mm`].
-pub fn meters(depth_m: f64) -> String {
+/// A distance from the eyes as whole millimeters: `450 mm`; errors and positions are in [`mm`].
+pub fn depth(depth_m: f64) -> String {
     Quantity::Depth.text(depth_m)
 }
 
@@ -278,7 +280,8 @@ mod tests {
         assert_eq!(joint_degrees(f64::NAN), "—");
         assert_eq!(ms(1.0 / 30.0), "33.3 ms");
         assert_eq!(px(0.0961), "0.0961 px");
-        assert_eq!(meters(0.45), "0.450 m");
+        assert_eq!(depth(0.45), "450 mm");
+        assert_eq!(depth(1.2346), "1235 mm");
         assert_eq!(hertz(29.97), "30.0 Hz");
         assert_eq!(Quantity::LengthPerPixel.text(0.0021), "2.10 mm/px");
         assert_eq!(Quantity::Ratio.text(0.785), "78.5 %");

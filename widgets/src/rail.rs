@@ -18,6 +18,8 @@ pub enum StepState<'a> {
     NotDone,
     /// Under way by a fraction of 0..=1.
     Running(f32),
+    /// A part of it is done, a fraction of 0..=1; nothing is under way.
+    Partly(f32),
     /// Done and valid.
     Done,
     /// Done, but something it depends on changed; a sentence that says what.
@@ -33,6 +35,7 @@ impl StepState<'_> {
             Self::Always => "",
             Self::NotDone => "not done",
             Self::Running(_) => "running",
+            Self::Partly(_) => "partly done",
             Self::Done => "done",
             Self::Stale(_) => "stale",
             Self::Failed(_) => "failed",
@@ -44,6 +47,7 @@ impl StepState<'_> {
             Self::Always => None,
             Self::NotDone => Some((Glyph::Ring, tokens.text_weak)),
             Self::Running(fraction) => Some((Glyph::Progress(*fraction), tokens.text_strong)),
+            Self::Partly(fraction) => Some((Glyph::Progress(*fraction), tokens.accepted)),
             Self::Done => Some((Glyph::Check, tokens.accepted)),
             Self::Stale(_) => Some((Glyph::Clock, tokens.warning)),
             Self::Failed(_) => Some((Glyph::Warning, tokens.warning)),
@@ -59,7 +63,7 @@ impl StepState<'_> {
                 Some(format!("Running, {}", crate::format::percent(f64::from(*fraction))))
             }
             // What it waits for is said by who knows.
-            Self::NotDone => None,
+            Self::NotDone | Self::Partly(_) => None,
             Self::Done => Some("Done".to_owned()),
         }
     }

@@ -45,7 +45,7 @@ pub fn depth(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         *cx.state.live.depth_range_m.get_or_insert_with(|| fitted_range_m(&values.values_px, depth_m));
     let scale = ColorScale::new(cx.state.live.colormap, range_m).reversed();
     let text = |u: usize, v: usize| {
-        let text = format::meters(values.depth_m(u as u32, v as u32)?);
+        let text = format::depth(values.depth_m(u as u32, v as u32)?);
         Some(with_origin(values, u, v, text))
     };
     let look = Look {

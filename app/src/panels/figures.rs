@@ -69,7 +69,7 @@ fn figures(ui: &mut Ui, eyes: &EyesView, calibration: &StereoCalibration) {
     rows.push(KeyValue::quantity("Baseline", Quantity::Length, calibration.cameras.baseline_m()));
     rows.push(
         KeyValue::optional(
-            format!("One pixel at {}", format::meters(stated_at_m)),
+            format!("One pixel at {}", format::depth(stated_at_m)),
             Quantity::Length,
             depth_per_px_m,
         )

@@ -143,7 +143,7 @@ fn pair_row(ui: &mut Ui, cx: &mut PanelContext<'_>, pair: &CollectedPair) {
             }
             // It stands under the mouse too; it must not run into the name.
             if let Some(place) = pair.place.filter(|_| ui.available_width() > DISTANCE) {
-                ui.label(theme::small(ui, format::meters(place.distance_m)));
+                ui.label(theme::small(ui, format::depth(place.distance_m)));
             }
             if let Some(minutes) = minutes_on(&cx.view.eyes, &pair.name)
                 && ui.available_width() > WARMTH

@@ -84,6 +84,10 @@ impl PlumblineWindow {
                 self.send(EyesCommand::AutoCapture(true).into());
             }
             self.send(command);
+            // What is shown is looked at before it is run.
+            if action == Action::Robot(RobotAction::ShowHome) {
+                self.settings.screen = Screen::Robot;
+            }
             return;
         }
         match action {

@@ -82,6 +82,7 @@ use narrow::NarrowTabs;
 use notices::NoticeList;
 use palette::Palette;
 use script::Script;
+use status_line::BegunOn;
 use taking::Taking;
 use touch_window::TouchWindow;
 
@@ -168,6 +169,8 @@ pub struct PlumblineWindow {
     may_open_commissioning: bool,
     /// The one button of the bottom line, and that of commissioning, when they mean something new.
     primary_rest: Rest<Action>,
+    /// Where what failed is said.
+    begun_on: BegunOn,
     commission_rest: Rest<Vec<Action>>,
     undo_rest: Rest<()>,
     touch_window: TouchWindow,
@@ -220,6 +223,7 @@ impl PlumblineWindow {
             commission_pressed: None,
             may_open_commissioning: options.opens_commissioning,
             primary_rest: Rest::default(),
+            begun_on: BegunOn::default(),
             commission_rest: Rest::default(),
             undo_rest: Rest::default(),
             touch_window: TouchWindow::default(),

@@ -254,6 +254,10 @@ fn touch_state(view: &View) -> StepState<'_> {
             let ended = counts.touched + counts.missed + counts.skipped + counts.rejected;
             StepState::Running((ended as f32 / wanted as f32).min(1.0))
         }
+        // Where the screen lies is the first half of it, touches to learn from are the second.
+        _ if view.touch.step == EngineStep::NotDone && view.touch.placement.is_some() => {
+            StepState::Partly(0.5)
+        }
         _ => step_state(&view.touch.step),
     }
 }

@@ -54,6 +54,11 @@ impl Script {
         Self { steps, not_before: Instant::now(), quiet_since: None, waiting_for_picture: Arc::default() }
     }
 
+    /// Whether steps are left: nobody sits before the window.
+    pub(super) fn is_set(&self) -> bool {
+        !self.steps.is_empty()
+    }
+
     /// The next step, once everything before it has come to rest.
     ///
     /// # Errors

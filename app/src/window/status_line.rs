@@ -1,8 +1,10 @@
 //! The bottom line: what is happening and what to do next, with the one button that does it.
 
+use std::borrow::Cow;
+
 use egui::{Align, Layout, Panel, Ui};
 use plumbline_engine::view::{JobState, JobView, MotionState};
-use plumbline_engine::{JobCommand, View};
+use plumbline_engine::{JobCommand, JobId, View};
 use plumbline_widgets::buttons::accent_button;
 use plumbline_widgets::progress::{ProgressAction, ProgressLine};
 use plumbline_widgets::theme::space;
@@ -15,13 +17,37 @@ use crate::operator::{
 
 const HEIGHT: f32 = 52.0;
 
+/// On which screen each job that is listed was begun, or first seen.
+#[derive(Default)]
+pub(super) struct BegunOn(Vec<(JobId, Screen)>);
+
+impl BegunOn {
+    fn see(&mut self, jobs: &[JobView], screen: Screen) {
+        self.0.retain(|(id, _)| jobs.iter().any(|job| job.id == *id));
+        for job in jobs {
+            if !self.0.iter().any(|(id, _)| *id == job.id) {
+                self.0.push((job.id, screen));
+            }
+        }
+    }
+
+    /// Whether a job is of this screen: the parts of the eyes are one.
+    fn is_of(&self, job: &JobView, screen: Screen) -> bool {
+        let is_same = |on: Screen| on == screen || on.is_eyes() && screen.is_eyes();
+        self.0.iter().any(|(id, on)| *id == job.id && is_same(*on))
+    }
+}
+
 pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
-    let line = line_of(&window.view, window.settings.screen);
+    let screen = window.settings.screen;
+    window.begun_on.see(&window.view.jobs, screen);
+    let line = line_of(&window.view, screen);
     let next = match &line {
         Line::Running(_) => None,
         Line::Guided { guidance, .. } => guidance.next.as_ref().map(|next| next.action),
     };
     window.primary_rest.see(ui.ctx(), next);
+    let keys = keys_come_here(ui.ctx()) || window.script.is_set();
     let margin = egui::Margin { left: 16, right: 8, top: 8, bottom: 8 };
     let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(margin);
     let bottom = Panel::bottom("bottom line").frame(frame).exact_size(HEIGHT).show_separator_line(false);
@@ -34,8 +60,37 @@ pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbo
             Some(_) => window.primary_rest.is_on(ui.ctx()),
         };
         let layout = Layout::right_to_left(Align::Center);
-        ui.with_layout(layout, |ui| contents(&window.view, line, resting, ui, outbox));
+        let failed = failed_job(&window.view, |job| window.begun_on.is_of(job, screen));
+        let look = Stands { resting, keys };
+        ui.with_layout(layout, |ui| contents(&window.view, line, failed, look, ui, outbox));
     });
+}
+
+/// How it stands with what can be pressed.
+#[derive(Clone, Copy)]
+struct Stands {
+    /// The button meant something else a moment ago.
+    resting: bool,
+    /// Keys come to this program.
+    keys: bool,
+}
+
+/// Whether one of the program's windows has the keys; where the desktop does not say, it has.
+fn keys_come_here(ctx: &egui::Context) -> bool {
+    ctx.input(|input| {
+        let mut known = input.raw.viewports.values().filter_map(|viewport| viewport.focused).peekable();
+        known.peek().is_none() || known.any(|focused| focused)
+    })
+}
+
+/// Which keys stop, where they would be heard.
+const KEYS: &str = "Esc or space stops.";
+
+fn by_keys(sentence: &str, keys: bool) -> Cow<'_, str> {
+    match keys {
+        true => sentence.into(),
+        false => sentence.replace(KEYS, "STOP stops it: another window has the keys.").into(),
+    }
 }
 
 /// What stands in it.
@@ -62,27 +117,38 @@ fn line_of(view: &View, screen: Screen) -> Line<'_> {
     }
 }
 
-fn contents(view: &View, line: Line<'_>, resting: bool, ui: &mut Ui, outbox: &mut Outbox) {
+/// `failed`: what was begun on this screen and failed.
+fn contents(
+    view: &View,
+    line: Line<'_>,
+    failed: Option<(&JobView, &str)>,
+    Stands { resting, keys }: Stands,
+    ui: &mut Ui,
+    outbox: &mut Outbox,
+) {
     let (guidance, led) = match line {
-        Line::Running(job) => return running(view, job, resting, ui, outbox),
+        Line::Running(job) => return running(view, job, Stands { resting, keys }, ui, outbox),
         Line::Guided { guidance, led } => (guidance, led),
     };
     let accepts = guidance.next.as_ref().is_some_and(|next| next.action.puts_in_use());
     if !accepts {
         next_button(view, &guidance, Look { led, resting }, ui, outbox);
     }
-    // What moves is not hidden behind what failed before.
-    let failed = failed_job(view).filter(|_| !moves(view));
+    // What moves, or would, is not hidden behind what failed before; and what the screen says itself is said once.
+    let would_move = guidance.next.as_ref().is_some_and(|next| next.action.begins_to_move());
+    let failed =
+        failed.filter(|(_, reason)| !moves(view) && !would_move && !guidance.sentence.contains(*reason));
     if let Some((job, _)) = failed
         && ui.button("Dismiss").clicked()
     {
         outbox.send(JobCommand::Dismiss(job.id));
     }
     let said = failed.map(|(job, reason)| format!("{}: {reason}", job.title));
+    let sentence = by_keys(&guidance.sentence, keys);
     let said = match &said {
         Some(said) => ProgressLine::warning(said),
-        None if guidance.warning => ProgressLine::warning(&guidance.sentence),
-        None => ProgressLine::idle(&guidance.sentence),
+        None if guidance.warning => ProgressLine::warning(&sentence),
+        None => ProgressLine::idle(&sentence),
     };
     ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
         // Accepting is never where collecting was.
@@ -93,10 +159,11 @@ fn contents(view: &View, line: Line<'_>, resting: bool, ui: &mut Ui, outbox: &mu
     });
 }
 
-fn running(view: &View, job: &JobView, resting: bool, ui: &mut Ui, outbox: &mut Outbox) {
+fn running(view: &View, job: &JobView, Stands { resting, keys }: Stands, ui: &mut Ui, outbox: &mut Outbox) {
     let JobState::Running { fraction, doing, remaining, cancelling } = &job.state else { return };
     let stops = if moves(view) { ". The robot moves; Esc or space stops." } else { "" };
     let sentence = format!("{}: {doing}{stops}", job.title);
+    let sentence = by_keys(&sentence, keys);
     let progress = ProgressLine::job(&sentence, *fraction).time_left(*remaining);
     // Who hammers the button that began it does not cancel it.
     let progress = progress.cancelling(*cancelling).resting(resting);
@@ -167,8 +234,8 @@ pub(super) fn moves(view: &View) -> bool {
     led_by(view).is_some() || matches!(view.robot.motion, MotionState::Moving { .. })
 }
 
-fn failed_job(view: &View) -> Option<(&JobView, &str)> {
-    view.jobs.iter().rev().find_map(|job| match &job.state {
+fn failed_job(view: &View, is_of_screen: impl Fn(&JobView) -> bool) -> Option<(&JobView, &str)> {
+    view.jobs.iter().rev().filter(|job| is_of_screen(job)).find_map(|job| match &job.state {
         JobState::Failed { reason } => Some((job, reason.as_str())),
         JobState::Panicked { message } => Some((job, message.as_str())),
         _ => None,

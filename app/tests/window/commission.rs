@@ -50,7 +50,7 @@ fn at(step: CommissionStep) -> View {
     View { commission: led_to(step), source: Arc::new(source), twin: Arc::new(twin), ..everything() }
 }
 
-fn eyes_in_use() -> EyesView {
+pub fn eyes_in_use() -> EyesView {
     let in_use = AcceptedCalibration {
         id: "first".to_owned(),
         calibration: Arc::new(StereoCalibration::bare(rig().eyes.cameras)),

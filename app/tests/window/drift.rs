@@ -229,7 +229,7 @@ fn pictures_of_drift() {
 }
 
 #[test]
-fn what_a_correction_by_time_states_is_said_in_centimeters_and_only_where_one_is_in_use() {
+fn what_a_correction_by_time_states_is_said_in_millimeters_and_only_where_one_is_in_use() {
     let corrected = DriftView { stated_m: Some([0.004, 0.007, 0.012]), ..watching(Some(course(12.0))) };
     let fake = Fake::over(with(corrected));
     let window = fake.window(on(Screen::Drift));

@@ -66,6 +66,25 @@ fn sessions_are_chosen_together_and_with_a_model() {
 }
 
 #[test]
+fn a_chosen_session_that_cannot_be_used_can_be_taken_out() {
+    let mut view = recorded();
+    let broken = &view.sessions[2];
+    assert!(broken.problem.is_some());
+    let name = broken.name.clone();
+    // From elsewhere, where it was good once.
+    view.chosen = Arc::from([view.sessions[0].folder.clone(), broken.folder.clone()]);
+    let (fake, mut window) = window_of(with(view.clone()));
+    click(&mut window, &format!("Compare {name}"));
+    let rest = vec![view.sessions[0].folder.clone()];
+    assert_eq!(asked(&fake), [GapCommand::Choose { sessions: rest }]);
+    // One that is not chosen is not to be.
+    view.chosen = Arc::from([view.sessions[0].folder.clone()]);
+    let (fake, mut window) = window_of(with(view));
+    click(&mut window, &format!("Compare {name}"));
+    assert_eq!(asked(&fake), []);
+}
+
+#[test]
 fn a_search_under_way_says_how_far_it_is() {
     let (_, mut window) = window_of(searching());
     click(&mut window, "Name and add");

@@ -9,10 +9,10 @@ use nalgebra::Point3;
 use plumbline::{PlumblineWindow, Screen, WindowSettings};
 use plumbline_engine::view::{
     BetweenSteps, Connection, DetectView, Gate, GateState, GraspHand, GraspMethod, GraspPhase, GraspRun,
-    GraspStep, GraspView, LampState, MotionState, ObjectView, RobotView, TouchPhase, TouchView, ToyView,
-    TwinView,
+    GraspStep, GraspView, LampState, MotionState, ObjectView, RobotView, StepState, TouchPhase, TouchView,
+    ToyView, TwinView,
 };
-use plumbline_engine::{Command, GraspCommand, GraspTarget, View};
+use plumbline_engine::{Command, Destination, GraspCommand, GraspTarget, RobotCommand, View};
 use plumbline_model::frame::Point;
 use plumbline_widgets::scene3d::SceneCamera;
 
@@ -85,6 +85,23 @@ fn who_can_hold_nothing_of_what_is_there_is_told_so_and_not_ready() {
 }
 
 #[test]
+fn a_doubt_about_places_leads_to_where_it_is_mended() {
+    let gate =
+        |state| Gate { name: "Places", state, text: "The place of the screen is in doubt.".to_owned() };
+    let of = |state| {
+        let mut view = with(GraspView { gates: Arc::from([gate(state)]), ..GraspView::default() });
+        view.eyes = Arc::new(crate::commission::eyes_in_use());
+        Arc::make_mut(&mut view.mount).step = StepState::Done;
+        on_grasp(&Fake::over(view))
+    };
+    let mut window = of(GateState::Doubtful);
+    assert!(says(&window, "Places: note"));
+    click(&mut window, "Go to Touch");
+    assert!(shows(&window, "No run yet"));
+    assert!(!shows(&of(GateState::Open), "Go to Touch"));
+}
+
+#[test]
 fn toys_that_made_room_are_not_simply_missing() {
     let twin = |made_room: &[&str]| {
         let toy = |name: &str, place| {
@@ -101,11 +118,15 @@ fn toys_that_made_room_are_not_simply_missing() {
         ..with(GraspView { classes: Arc::from(["Tomato"]), ..GraspView::default() })
     };
     let room =
-        "Tomato made room for touches and comes back once no hand is over the screen. Bring the arm home.";
-    let mut window = on_grasp(&Fake::over(view(&["tomato"])));
+        "Tomato made room for touches and comes back once no hand is over the screen. Bring the arm home";
+    let fake = Fake::over(view(&["tomato"]));
+    let mut window = on_grasp(&fake);
     assert!(says(&window, room));
-    click(&mut window, "Go to Robot");
+    fake.take_sent();
+    click(&mut window, "Show the way home");
     assert!(shows(&window, "Poses") && !shows(&window, room));
+    let home = Destination::Pose { name: "home".to_owned() };
+    assert_eq!(fake.take_sent(), [Command::from(RobotCommand::Preview(home))]);
     // A doubt does not hide that nothing lies there.
     let doubtful = |mut view: View| {
         let gate = Gate { name: "Places", state: GateState::Doubtful, text: "Not calibrated.".to_owned() };

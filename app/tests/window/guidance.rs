@@ -11,8 +11,10 @@ use plumbline_engine::view::{
 };
 use plumbline_engine::{Command, EyesCommand, JobCommand, JobId, SourceCommand, View};
 
+use plumbline_model::touch_plan::PlanOptions;
+
 use crate::fake::{Fake, click, says, shows};
-use crate::made_up_touch::{running, with_touch};
+use crate::made_up_touch::{area, planned, running, with_touch};
 
 fn on(screen: Screen) -> WindowSettings {
     WindowSettings { screen, ..WindowSettings::default() }
@@ -111,6 +113,31 @@ fn what_failed_before_does_not_hide_what_moves() {
     Arc::make_mut(&mut view.touch).phase = TouchPhase::Finished;
     let window = Fake::over(view).window(on(Screen::Touch));
     assert!(says(&window, "15 touches are too few"), "it is still to be read");
+}
+
+#[test]
+fn what_failed_is_said_where_it_was_begun_and_not_beside_what_moves() {
+    let failed = JobView {
+        id: JobId(1),
+        title: "Find what is missing".to_owned(),
+        state: JobState::Failed { reason: "7 rows are too few".to_owned() },
+        elapsed: std::time::Duration::from_secs(1),
+        by_itself: false,
+    };
+    let jobs: Arc<[JobView]> = Arc::from([failed]);
+    let fake = Fake::over(View::default());
+    let mut window = fake.window(on(Screen::Models));
+    fake.show(View { jobs: jobs.clone(), ..View::default() });
+    window.run_steps(3);
+    assert!(shows(&window, "Dismiss"));
+    click(&mut window, "Robot");
+    assert!(!shows(&window, "Dismiss"), "here something else comes next");
+    click(&mut window, "Models");
+    assert!(shows(&window, "Dismiss"), "it is still to be read");
+    // Where the next press moves the arm, that is what is said.
+    let plan = planned(PlanOptions::first(area()));
+    let window = Fake::over(View { jobs, ..with_touch(plan) }).window(on(Screen::Touch));
+    assert!(!shows(&window, "Dismiss") && says(&window, "arm touches the glass"));
 }
 
 #[test]

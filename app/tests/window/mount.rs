@@ -2,16 +2,18 @@
 
 use std::sync::Arc;
 
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use plumbline::{Screen, ThemeChoice, WindowSettings};
 use plumbline_engine::view::{
-    AcceptedCalibration, EyesView, MountView, RobotView, SourceStatus, SourceView, StepState, TwinView,
+    AcceptedCalibration, EyesView, MountView, RobotView, SourceStatus, SourceView, StepState, TouchView,
+    TwinView,
 };
 use plumbline_engine::{Command, MountCommand, RobotCommand, TwinCommand, View};
 use plumbline_model::StereoCalibration;
 
-use crate::fake::{Fake, click, says};
+use crate::fake::{Fake, click, says, shows};
 use crate::made_up::{connected, everything, lying_board, mount, rig, solved_mount, twin};
+use crate::made_up_touch::placement;
 
 fn on_mount() -> WindowSettings {
     WindowSettings { screen: Screen::Mount, ..WindowSettings::default() }
@@ -93,11 +95,38 @@ fn what_was_accepted_is_behind_and_the_button_leads_to_the_next_step() {
     assert!(says(&window, "Next: touch the screen (step 3)."));
     click(&mut window, "Go to Touch");
     assert!(says(&window, "First measure where the screen lies"));
+    // With that done, too, it leads further on, and not back to the board.
+    let touch = TouchView { placement: Some(Arc::new(placement())), ..TouchView::default() };
+    let placed = View { touch: Arc::new(touch), ..ready(accepted.clone()) };
+    let window = Fake::over(placed.clone()).window(on_mount());
+    assert!(says(&window, "Next: touch targets to learn from (step 3)."));
+    let partly = window.get_by_role_and_label(egui::accesskit::Role::Tab, "Touch").accesskit_node().value();
+    assert_eq!(partly.as_deref(), Some("partly done"));
+    let mut touched = placed;
+    Arc::make_mut(&mut touched.touch).step = StepState::Done;
+    let window = Fake::over(touched).window(on_mount());
+    assert!(says(&window, "Next: learn from the touches"));
     // A view more is one to solve with.
     let more = MountView { is_solved: false, ..accepted };
     let fake = Fake::over(ready(more));
     let window = fake.window(on_mount());
     assert!(says(&window, "Solve 13 views"));
+}
+
+#[test]
+fn a_mount_of_eyes_that_were_taken_back_is_not_green() {
+    let why = "The eyes that the mount was solved with are not in use any more.".to_owned();
+    let step = StepState::Stale { why: why.clone() };
+    let stale =
+        MountView { proposal: None, views: Arc::from([]), in_use: Some(solved_mount()), step, ..mount() };
+    let mut view = ready(stale);
+    let mut window = Fake::over(view.clone()).window(on_mount());
+    assert!(says(&window, &why) && shows(&window, "Plan head poses"));
+    view.eyes = Arc::default();
+    window = Fake::over(view).window(on_mount());
+    assert!(says(&window, &why));
+    click(&mut window, "Calibrate the eyes");
+    assert!(shows(&window, "No pairs yet"));
 }
 
 #[test]

@@ -93,7 +93,7 @@ fn each_entry_says_its_error_and_what_is_in_use_is_listed() {
         assert!(says(&window, text), "{text}");
     }
     assert!(says(&window, "the robot as it is described"));
-    assert!(says(&window, "6 results. The newest, measured: 25 touches"));
+    assert!(says(&window, "6 entries. The newest, measured: 25 touches"));
 }
 
 #[test]

@@ -9,7 +9,7 @@ use plumbline::{PlumblineWindow, Screen, ThemeChoice, WindowSettings};
 use plumbline_engine::view::{
     Connection, ContactSource, RobotView, TouchCounts, TouchOutcome, TouchPhase, TouchView, ToyView, TwinView,
 };
-use plumbline_engine::{Command, ScreenWindow, TouchCommand, View};
+use plumbline_engine::{Command, Destination, RobotCommand, ScreenWindow, TouchCommand, View};
 use plumbline_model::frame::Point;
 use plumbline_model::touch_plan::{Finger, Pattern, PlanOptions, Purpose, TouchArea};
 
@@ -264,11 +264,25 @@ fn while_it_runs_the_window_says_how_far_it_is_and_stop_is_there() {
     // Finishing early is asked about once more.
     click(&mut window, "Finish");
     assert_eq!(sent(&fake), []);
+    assert!(says(&window, "the session stays, and so does the arm"));
     click(&mut window, "Finish now");
     assert_eq!(sent(&fake), [TouchCommand::Finish]);
     window.key_press(egui::Key::Escape);
     window.run_steps(1);
     assert!(fake.take_stops() > 0, "Esc stops");
+}
+
+#[test]
+fn a_hand_that_stays_at_the_screen_is_said_and_its_way_home_is_shown_first() {
+    let near = TouchView { near_screen: Some("Right arm".to_owned()), ..after(34, TouchPhase::Finished) };
+    let (fake, mut window) = window(with_touch(near));
+    assert!(says(&window, "Right arm stays at the screen"));
+    click(&mut window, "Show the way home");
+    let home = Destination::Pose { name: "home".to_owned() };
+    assert_eq!(fake.take_sent(), [Command::from(RobotCommand::Preview(home))]);
+    assert!(shows(&window, "Poses"), "where it is shown and run");
+    let (_, window) = self::window(with_touch(after(34, TouchPhase::Finished)));
+    assert!(!shows(&window, "Show the way home"), "it went home");
 }
 
 #[test]

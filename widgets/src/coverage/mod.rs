@@ -82,7 +82,7 @@ impl Coverage {
             return "Everything was shown: more pairs make it only slightly better.".to_owned();
         }
         let shown = missing.len().min(3);
-        format!("Not shown yet: {}.", missing[..shown].join("; "))
+        format!("Would make it better: {}.", missing[..shown].join("; "))
     }
 }
 
@@ -94,6 +94,9 @@ fn range_text([low, high]: [f64; 2], quantity: Quantity) -> String {
 
 /// Draws both images' coverage, the two histograms and the advice.
 pub fn coverage_view(ui: &mut Ui, coverage: &Coverage) {
+    // First, for below the pictures it is out of sight in a low window.
+    ui.label(coverage.advice());
+    ui.add_space(space::XS);
     let column = ((ui.available_width() - space::M) / 2.0).max(96.0);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = space::M;
@@ -111,8 +114,6 @@ pub fn coverage_view(ui: &mut Ui, coverage: &Coverage) {
         histogram(ui, "Distance", &coverage.distance_m, Quantity::Length, width);
         histogram(ui, "Tilt", &coverage.tilt_rad, Quantity::Angle, width);
     });
-    ui.add_space(space::XS);
-    ui.label(coverage.advice());
 }
 
 /// Least room of a number below a histogram.
@@ -230,7 +231,7 @@ mod tests {
         for i in 0..200 {
             coverage.distance_m.add(0.15 + 0.5 * f64::from(i) / 200.0);
         }
-        assert_eq!(coverage.advice(), "Not shown yet: boards tilted by 0 to 10°.");
+        assert_eq!(coverage.advice(), "Would make it better: boards tilted by 0 to 10°.");
         for i in 0..200 {
             coverage.tilt_rad.add(50f64.to_radians() * f64::from(i) / 200.0);
         }

@@ -119,7 +119,7 @@ pub(super) fn depth(ui: &mut Ui, state: &mut GalleryState) {
             let picture = state.textures.get(&key, 1, || colorize(&values, [w, h], &scale)).clone();
             let text = |column: usize, row: usize| {
                 let depth = values.get(row * w + column).filter(|depth| depth.is_finite())?;
-                Some(format::meters(f64::from(*depth)))
+                Some(format::depth(f64::from(*depth)))
             };
             ImageView::new(&key, Content::Picture(&picture))
                 .value_text(&text)

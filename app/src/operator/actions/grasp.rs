@@ -6,6 +6,8 @@ use plumbline_engine::view::{GateState, GraspPhase, TouchPhase};
 use plumbline_engine::{Command, GraspCommand, HandStep, View};
 use serde::Serialize;
 
+use crate::operator::words::grasp::made_room;
+
 /// Of grasping.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -83,7 +85,10 @@ impl GraspAction {
         match self {
             Self::Hand(HandStep::Home) if under_way => None,
             Self::Plan | Self::Grasp | Self::Hand(_) if under_way => Some("something is under way".into()),
-            Self::Plan | Self::Grasp => grasp.trouble().map(said),
+            Self::Plan | Self::Grasp => {
+                // What made room is not there to be seen.
+                grasp.trouble().map(said).or_else(|| made_room(view).as_deref().map(said))
+            }
             Self::Hand(_) => arm_trouble(view),
             Self::Forget => when(grasp.plan.is_some() && !under_way, "nothing is planned"),
             Self::Pause => when(grasp.phase.moves() && !grasp.phase.is_paused(), "nothing moves"),
@@ -142,7 +147,8 @@ fn said(text: &str) -> Cow<'static, str> {
 mod tests {
     use std::sync::Arc;
 
-    use plumbline_engine::view::GraspView;
+    use plumbline_engine::view::{Connection, GraspView, RobotView, ToyView, TwinView};
+    use plumbline_model::frame::{Point, Robot};
 
     use super::*;
 
@@ -154,6 +160,35 @@ mod tests {
         assert_eq!(why(GraspAction::End), "nothing is under way");
         assert_eq!(why(GraspAction::Held), "no grasp has ended yet");
         assert_eq!(GraspAction::Held.command(&view), None);
+    }
+
+    #[test]
+    fn what_made_room_is_not_looked_for() {
+        let toy = |place: Option<Point<Robot>>| ToyView {
+            name: "tomato".to_owned(),
+            place,
+            radius_m: 0.03,
+            rgb: [200, 40, 30],
+        };
+        let why = |place| {
+            let toys = vec![toy(place)];
+            let twin =
+                TwinView { running: true, toys, made_room: vec!["tomato".to_owned()], ..TwinView::default() };
+            let robot = RobotView {
+                connection: Connection::Connected { to: "it".to_owned(), twin: true },
+                ..RobotView::default()
+            };
+            let grasp = GraspView { classes: Arc::from(["Tomato"]), ..GraspView::default() };
+            let view = View {
+                grasp: Arc::new(grasp),
+                twin: Arc::new(twin),
+                robot: Arc::new(robot),
+                ..View::default()
+            };
+            GraspAction::Plan.refusal(&view)
+        };
+        assert!(why(None).is_some_and(|why| why.contains("made room for touches")));
+        assert_eq!(why(Some(Point::new(0.4, 0.0, 0.08))), None);
     }
 
     #[test]

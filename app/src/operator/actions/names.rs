@@ -4,7 +4,8 @@ use plumbline_engine::ExportFormat;
 use serde_json::Value;
 
 use super::{
-    Action, GapAction, GraspAction, HandEyeAction, LabelsAction, ModelsAction, MountAction, TouchAction, all,
+    Action, CommissionAction, GapAction, GraspAction, HandEyeAction, LabelsAction, ModelsAction, MountAction,
+    RobotAction, TouchAction, TrialsAction, all,
 };
 use crate::operator::screens::Screen;
 use crate::operator::snapshot::models::Method;
@@ -114,6 +115,20 @@ impl Action {
                 | Self::Mount(MountAction::Tour)
                 | Self::Touch(TouchAction::Start | TouchAction::Resume)
                 | Self::Grasp(GraspAction::Grasp | GraspAction::Resume | GraspAction::Hand(_))
+        )
+    }
+
+    /// Whether it lets something of the robot move, at once.
+    pub fn begins_to_move(self) -> bool {
+        matches!(
+            self,
+            Self::Robot(RobotAction::Move)
+                | Self::Mount(MountAction::Tour)
+                | Self::Touch(TouchAction::Start | TouchAction::Resume | TouchAction::Prepared)
+                | Self::HandEye(HandEyeAction::Look)
+                | Self::Grasp(GraspAction::Grasp | GraspAction::Resume | GraspAction::Hand(_))
+                | Self::Trials(TrialsAction::GoOn | TrialsAction::Placed)
+                | Self::Commission(CommissionAction::Next)
         )
     }
 

@@ -3,7 +3,9 @@
 use std::borrow::Cow;
 
 use plumbline_engine::view::{Connection, MotionState, StepState, TouchPhase, TrialsPhase};
-use plumbline_engine::{Command, MountCommand, RobotCommand, SourceCommand, SourceSpec, TwinCommand, View};
+use plumbline_engine::{
+    Command, Destination, MountCommand, RobotCommand, SourceCommand, SourceSpec, TwinCommand, View,
+};
 use serde::Serialize;
 
 use crate::operator::words::eyes::WARM_AFTER_MINUTES;
@@ -26,6 +28,8 @@ pub enum RobotAction {
     ShortenAnswers,
     /// Runs the move that is shown.
     Move,
+    /// Shows the move to where the arms are in nothing's way; opens where it is shown.
+    ShowHome,
     /// Forgets the move that is shown.
     ForgetMove,
     /// Releases a latched STOP.
@@ -93,7 +97,7 @@ fn when(possible: bool, why: &'static str) -> Refusal {
 
 impl RobotAction {
     /// All of them, in the palette's order.
-    pub const ALL: [Self; 21] = [
+    pub const ALL: [Self; 22] = [
         Self::Connect,
         Self::ConnectTwin,
         Self::TwinEyes,
@@ -101,6 +105,7 @@ impl RobotAction {
         Self::Scan,
         Self::ShortenAnswers,
         Self::Move,
+        Self::ShowHome,
         Self::ForgetMove,
         Self::ReleaseStop,
         Self::TorqueOn,
@@ -127,6 +132,7 @@ impl RobotAction {
             Self::Scan => "Look for servos again",
             Self::ShortenAnswers => "Shorten answers…",
             Self::Move => "Move there",
+            Self::ShowHome => "Show the way home",
             Self::ForgetMove => "Forget the shown move",
             Self::ReleaseStop => "Release STOP",
             Self::TorqueOn => "Hold all joints",
@@ -173,6 +179,7 @@ impl RobotAction {
             ),
             Self::SavePose => when(connected, "no robot is connected"),
             Self::Move => move_refusal(view),
+            Self::ShowHome => home_refusal(view),
             Self::ForgetMove => when(robot.preview.is_some(), "no move is shown"),
             Self::ReleaseStop => when(robot.stopped, "STOP is not latched"),
             Self::TorqueOn if robot.stopped => Some("STOP is latched: release it first".into()),
@@ -209,6 +216,7 @@ impl RobotAction {
             Self::Disconnect => RobotCommand::Disconnect.into(),
             Self::Scan => RobotCommand::Scan.into(),
             Self::Move => RobotCommand::RunPreview.into(),
+            Self::ShowHome => RobotCommand::Preview(Destination::Pose { name: HOME.to_owned() }).into(),
             Self::ForgetMove => RobotCommand::ClearPreview.into(),
             Self::ReleaseStop => RobotCommand::ReleaseStop.into(),
             Self::TorqueOn => RobotCommand::Torque { joints: all(), on: true }.into(),
@@ -246,6 +254,21 @@ pub fn led_by(view: &View) -> Option<&'static str> {
     } else {
         None
     }
+}
+
+/// Name of the pose in which the arms are in nothing's way.
+const HOME: &str = "home";
+
+/// Why the way home cannot be shown.
+fn home_refusal(view: &View) -> Refusal {
+    let robot = &view.robot;
+    if !robot.connection.is_connected() {
+        return Some("no robot is connected".into());
+    }
+    if !robot.poses.iter().any(|pose| pose.name == HOME) {
+        return Some("this robot has no pose of this name".into());
+    }
+    led_by(view).map(Cow::Borrowed)
 }
 
 /// Why the shown move cannot be run.

@@ -11,6 +11,7 @@ use super::sentence::{Guidance, say};
 use crate::operator::words::grasp::{
     again, closed, go_on, held_now, holds, made_room, method, object_of, try_of,
 };
+use crate::operator::words::robot::turns_most;
 use crate::operator::words::trials::ask;
 use crate::operator::{Action, GraspAction, RobotAction, Screen, TrialsAction, is_under_way};
 
@@ -54,14 +55,16 @@ fn idle(view: &View) -> Guidance {
         return match is_under_way(&view.touch.phase) {
             true => say(away).then("Go to Touch", Action::Go(Screen::Touch)),
             false => {
-                say(format!("{away} Bring the arm home.")).then("Go to Robot", Action::Go(Screen::Robot))
+                let home = RobotAction::ShowHome;
+                say(format!("{away} Bring the arm home: its way is shown first."))
+                    .then(home.label(), home.into())
             }
         };
     }
     let by = grasp.method.map(method).unwrap_or_default();
     if let Some(plan) = &grasp.plan {
         let most = plan.turns.first().map_or_else(String::new, |(joint, turn_rad)| {
-            format!(" {joint} turns most, {} in all.", format::degrees(*turn_rad))
+            format!(" {}, {} in all.", turns_most(joint), format::degrees(*turn_rad))
         });
         let label = format!("Grasp {} with {by}", plan.object.to_lowercase());
         return say(format!("Shown as a ghost.{most} It takes about {} s.", plan.duration.as_secs()))

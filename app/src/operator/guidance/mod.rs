@@ -17,6 +17,7 @@ mod touch;
 
 pub use commission::{Course, Press, course, done_in_words, name as commission_name, spent};
 pub use gap::is_of_choice;
+pub use onward::way_to;
 pub use sentence::Guidance;
 pub use touch::{
     check_in_words, done_of, go_on, is_screen_to_be_decided, minutes, waiting_touch, wanted, what_moves,

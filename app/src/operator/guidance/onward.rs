@@ -1,7 +1,7 @@
 //! From one step of the work to the next: what was accepted is behind, and the button leads on.
 
 use plumbline_engine::View;
-use plumbline_engine::view::StepState;
+use plumbline_engine::view::{Gate, GateState, StepState};
 
 use super::sentence::{Guidance, say};
 use crate::operator::{Action, Screen};
@@ -17,12 +17,35 @@ pub(super) fn after_the_eyes(view: &View, said: &str) -> Option<Guidance> {
     })
 }
 
-/// After the mount, as long as nobody measured where the screen lies.
+/// After the mount: to the first step that is left.
 pub(super) fn after_the_mount(view: &View, said: &str) -> Option<Guidance> {
-    let is_next = view.mount.step == StepState::Done && view.touch.placement.is_none();
-    is_next.then(|| {
-        say(format!("{said} Next: touch the screen (step 3).")).then("Go to Touch", Action::Go(Screen::Touch))
-    })
+    if view.mount.step != StepState::Done {
+        return None;
+    }
+    let (next, label, screen) = if view.touch.placement.is_none() {
+        ("touch the screen (step 3)", "Go to Touch", Screen::Touch)
+    } else if view.touch.step != StepState::Done {
+        ("touch targets to learn from (step 3)", "Go to Touch", Screen::Touch)
+    } else if [&view.models.step, &view.gap.step].iter().all(|step| **step == StepState::NotDone) {
+        ("learn from the touches (step 4 or 5)", "Go to Models", Screen::Models)
+    } else {
+        ("grasp (step 7)", "Go to Grasp", Screen::Grasp)
+    };
+    Some(say(format!("{said} Next: {next}.")).then(label, Action::Go(screen)))
+}
+
+/// Where what a gate lacks, or has in doubt, is made: "Calibrate the eyes", and the screen.
+pub fn way_to(gate: &Gate, view: &View) -> Option<(&'static str, Screen)> {
+    if gate.state == GateState::Open || gate.name != "Places" {
+        return None;
+    }
+    if view.eyes.in_use.is_none() || view.eyes.health.does_not_hold.is_some() {
+        return Some(("Calibrate the eyes", Screen::Collect));
+    }
+    if view.mount.step != StepState::Done {
+        return Some(("Go to Mount", Screen::Mount));
+    }
+    Some(("Go to Touch", Screen::Touch))
 }
 
 /// To grasping, where the eyes that lead there are still good.

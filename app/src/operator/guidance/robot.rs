@@ -147,9 +147,14 @@ pub(super) fn mount(view: &View) -> Guidance {
     if let Some(guidance) = to_take_hold_of(&view.robot) {
         return guidance;
     }
+    let stale = match &mount.step {
+        StepState::Stale { why } => Some(why),
+        _ => None,
+    };
     if view.eyes.in_use.is_none() {
-        return say("Calibrate the eyes first: how they sit in the head rests on their lenses.")
-            .then("Calibrate the eyes", Action::Go(Screen::Collect));
+        let first = "Calibrate the eyes first: how they sit in the head rests on their lenses.";
+        let guidance = stale.map_or_else(|| say(first), |why| say(why.clone()).warn());
+        return guidance.then("Calibrate the eyes", Action::Go(Screen::Collect));
     }
     if let Some(proposal) = &mount.proposal {
         let (good, verdict) = mount::verdict(proposal);
@@ -170,22 +175,17 @@ pub(super) fn mount(view: &View) -> Guidance {
     if let Some(guidance) = onward::after_the_mount(view, "The mount of the eyes is in use.") {
         return guidance;
     }
+    let told = |then: String| match stale {
+        Some(why) => say(format!("{why} {then}")).warn(),
+        None => say(then),
+    };
     if view.twin.running && view.twin.board.is_none() {
-        return say("The board has to lie where both eyes see it; the head turns, the board stays.")
+        let lies = "The board has to lie where both eyes see it; the head turns, the board stays.";
+        return told(lies.to_owned())
             .then("Lay the board on the table", Action::Robot(RobotAction::LayBoard));
     }
-    if mount.in_use.is_some() {
-        return say(next_or(
-            view,
-            "The mount of the eyes is in use. Plan again when the head was taken apart.",
-        ))
-        .then("Plan head poses", Action::Mount(MountAction::Plan));
-    }
-    say(next_or(
-        view,
-        "Lay the board where both eyes see it and leave it there. Then plan: nothing moves yet.",
-    ))
-    .then("Plan head poses", Action::Mount(MountAction::Plan))
+    let lay = "Lay the board where both eyes see it and leave it there. Then plan: nothing moves yet.";
+    told(next_or(view, lay)).then("Plan head poses", Action::Mount(MountAction::Plan))
 }
 
 /// The engine's own sentence, where it has one.

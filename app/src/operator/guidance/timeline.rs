@@ -30,7 +30,8 @@ pub(super) fn timeline(view: &View) -> Guidance {
         (_, Some(after)) => format!(", {}", figure(after)),
         _ => String::new(),
     };
-    let count = format::count(timeline.entries.len(), "result");
+    // What was taken back is an entry, too.
+    let count = format::count(timeline.entries.len(), "entry");
     say(format!("{count}. The newest, {what}: {}{error}.", newest.title))
         .then("Report of the setup…", TimelineAction::Report(TimelineFormat::Html).into())
 }

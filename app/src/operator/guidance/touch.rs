@@ -145,9 +145,9 @@ pub fn start_label(plan: &PlanView) -> String {
 fn paused(touch: &TouchView, why: Option<&str>) -> Guidance {
     let done = done_of(touch.counts);
     let why = why.map_or_else(String::new, |why| format!(" {}.", capitalized(why.trim_end_matches('.'))));
-    let guidance =
-        say(format!("Paused after {done} of {}; what was touched is on disk.{why}", wanted(touch.counts)))
-            .then(go_on(touch), Action::Touch(TouchAction::Resume));
+    let kept = if done == 0 { "nothing was touched yet" } else { "what was touched is on disk" };
+    let guidance = say(format!("Paused after {done} of {}; {kept}.{why}", wanted(touch.counts)))
+        .then(go_on(touch), Action::Touch(TouchAction::Resume));
     if why.is_empty() { guidance } else { guidance.warn() }
 }
 

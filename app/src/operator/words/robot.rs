@@ -12,7 +12,7 @@ pub fn moved_name(preview: &Preview) -> String {
 /// What the move would do and how near it comes to something.
 pub fn move_sentence(preview: &Preview) -> String {
     let turns = preview.largest_turn.as_ref().map_or_else(String::new, |(joint, by_rad)| {
-        format!(" {joint} turns most, by {}.", whole_degrees(*by_rad))
+        format!(" {}, by {}.", turns_most(joint), whole_degrees(*by_rad))
     });
     match &preview.path {
         Ok(check) => format!(
@@ -23,6 +23,12 @@ pub fn move_sentence(preview: &Preview) -> String {
         ),
         Err(why) => format!("{} cannot be done: {why}", preview.title),
     }
+}
+
+/// "Right elbow turns most", "Right other fingers turn most".
+pub fn turns_most(joint: &str) -> String {
+    let turn = if joint.ends_with("fingers") { "turn" } else { "turns" };
+    format!("{joint} {turn} most")
 }
 
 /// "1.4 s".

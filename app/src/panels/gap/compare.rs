@@ -91,11 +91,13 @@ fn row(ui: &mut Ui, cx: &mut PanelContext<'_>, session: &GapSession) {
     ui.horizontal(|ui| {
         ui.set_height(ROW_HEIGHT);
         let usable = session.problem.is_none();
-        let check = ui.add_enabled(usable, egui::Checkbox::without_text(&mut chosen));
+        // What is chosen can be taken out, also where it cannot be used.
+        let can_change = usable || chosen;
+        let check = ui.add_enabled(can_change, egui::Checkbox::without_text(&mut chosen));
         check.widget_info(|| {
             egui::WidgetInfo::selected(
                 egui::Role::CheckBox,
-                usable,
+                can_change,
                 chosen,
                 format!("Compare {}", session.name),
             )

@@ -7,13 +7,14 @@ use plumbline_widgets::format;
 use plumbline_widgets::key_value::{KeyValue, key_value_grid};
 use plumbline_widgets::theme::{self, group_heading, space};
 
+use crate::operator::Outbox;
 use crate::operator::words::clock;
 use crate::operator::words::grasp::{closed, method, result};
 use crate::panels::{PanelState, show_gates};
 
-pub fn show(ui: &mut Ui, view: &View, state: &PanelState) {
+pub fn show(ui: &mut Ui, view: &View, state: &PanelState, outbox: &mut Outbox) {
     group_heading(ui, "Before anything moves");
-    show_gates(ui, &view.grasp.gates);
+    show_gates(ui, &view.grasp.gates, view, outbox);
     let chosen = state.grasp.chosen.as_ref();
     let mut attempts = view.grasp.attempts.iter();
     let shown = match chosen {

@@ -4,11 +4,12 @@ use egui::Ui;
 use plumbline_engine::View;
 use plumbline_widgets::theme::{self, group_heading};
 
+use crate::operator::Outbox;
 use crate::panels::show_gates;
 
-pub fn show(ui: &mut Ui, view: &View) {
+pub fn show(ui: &mut Ui, view: &View, outbox: &mut Outbox) {
     group_heading(ui, "Before anything moves");
-    show_gates(ui, &view.handeye.gates);
+    show_gates(ui, &view.handeye.gates, view, outbox);
     group_heading(ui, "What it is good for");
     ui.label(theme::small(
         ui,

@@ -14,7 +14,7 @@ use super::parts::error_length_m;
 use super::words;
 use crate::operator::guidance::{check_in_words, go_on, is_screen_to_be_decided};
 use crate::operator::words::proof::Proof;
-use crate::operator::{Action, Screen, TouchAction, done_of, is_under_way, wanted};
+use crate::operator::{Action, RobotAction, Screen, TouchAction, done_of, is_under_way, wanted};
 use crate::panels::parts::{action_button, warning};
 use crate::panels::{PanelContext, padded};
 
@@ -47,6 +47,18 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
 
 /// The state of the run in a sentence, with what can be done.
 fn head(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    state(ui, cx);
+    if cx.state.touch.finishing && is_under_way(&cx.view.touch.phase) {
+        ui.label(theme::small(ui, FINISHES));
+    }
+    let Some(arm) = cx.view.touch.near_screen.clone() else { return };
+    ui.horizontal_wrapped(|ui| {
+        ui.label(theme::weak(ui, format!("{arm} stays at the screen.")));
+        action_button(ui, cx, RobotAction::ShowHome, RobotAction::ShowHome.label());
+    });
+}
+
+fn state(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let touch = &cx.view.touch;
     match &touch.phase {
         TouchPhase::Waiting { what, prepare } => {
@@ -138,6 +150,9 @@ fn finished(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     });
 }
 
+/// What ending a run early does.
+const FINISHES: &str = "Ends the run with what there is: the session stays, and so does the arm, where it is. A screen on a block is asked for first.";
+
 /// Asks once more in place: what is left of the plan would have to be begun anew.
 fn finish_button(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let asked = cx.state.touch.finishing;
@@ -146,7 +161,7 @@ fn finish_button(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         cx.state.touch.finishing = false;
     }
     let text = if asked { "Finish now" } else { "Finish" };
-    if ui.button(text).on_hover_text("Ends the run with what there is; the session stays").clicked() {
+    if ui.button(text).on_hover_text(FINISHES).clicked() {
         cx.state.touch.finishing = !asked;
         if asked {
             cx.outbox.act(Action::Touch(TouchAction::Finish));

@@ -36,7 +36,12 @@ fn sentence(score: &PlanScore, seen: usize) -> Option<String> {
         return Some("No cause of errors would stand out of the noise: more targets are needed.".to_owned());
     }
     let alike: usize = score.alike.iter().map(Vec::len).sum();
-    (alike > 0).then(|| format!("{alike} of these causes look like another one on the glass."))
+    // A mixture of causes is told where no other one looks like it: a sum over all of them, not a part of the figure above.
+    let told = format!("These touches tell {} of causes apart", format::count(score.directions, "mixture"));
+    Some(match alike {
+        0 => format!("{told}."),
+        _ => format!("Of the {seen}, {alike} look like another one on the glass. {told}."),
+    })
 }
 
 fn row(ui: &mut Ui, effect: &EffectVisibility) {

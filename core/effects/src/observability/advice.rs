@@ -46,7 +46,7 @@ impl Addition {
             Self::VariedPosture => "with the elbow held higher or lower".to_owned(),
         };
         format!(
-            "Touch {touches} of the targets again {what}: {after} instead of {before} causes can be told apart."
+            "Touch {touches} of the targets again {what}: {after} instead of {before} mixtures of causes are told apart."
         )
     }
 }

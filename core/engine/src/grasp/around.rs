@@ -26,8 +26,9 @@ pub struct GraspAround {
     pub calibration: Option<Arc<StereoCalibration>>,
     /// For how long the eyes have been on, min; `None`: nobody knows.
     pub eyes_on_min: Option<f64>,
-    /// Why the calibration of the eyes does not hold any more; `None`: nobody has seen that.
-    pub eyes_off: Option<String>,
+    /// Why places are in doubt although what they rest on was calibrated: eyes that do not hold any more, a mount of
+    /// other eyes, a screen that few touches placed; `None`: nobody has seen that.
+    pub in_doubt: Option<String>,
     /// Whether the mount of the eyes was calibrated.
     pub has_mount: bool,
     /// Whether it was measured where the screen lies.
@@ -46,6 +47,8 @@ pub struct GraspAround {
     pub in_experiment: bool,
     /// Why a run of touches comes first, and what to do; a sentence.
     pub touches_first: Option<&'static str>,
+    /// Whether a run of touches is paused: it goes on after what is done here.
+    pub touches_paused: bool,
 }
 
 impl GraspAround {
@@ -71,7 +74,7 @@ impl GraspAround {
             robot: Arc::default(),
             calibration: None,
             eyes_on_min: None,
-            eyes_off: None,
+            in_doubt: None,
             has_mount: false,
             has_screen: false,
             corrections: Corrections::default(),
@@ -81,6 +84,7 @@ impl GraspAround {
             found: None,
             in_experiment: false,
             touches_first: None,
+            touches_paused: false,
         }
     }
 }

@@ -21,7 +21,7 @@ pub fn gates(around: &GraspAround, choice: HandChoice, method: Method) -> Vec<Ga
         // A step of a hand needs no method: published ones are refused below.
         let hands = hands.unwrap_or(&[Hand::Left]);
         gates.push(stop(robot));
-        gates.extend(around.touches_first.map(|why| closed("Run", why)));
+        gates.extend(run(around));
         gates.push(of_any(hands, |hand| joints(around, hand.name())));
         gates.push(of_any(hands, |hand| load(around, hand.name())));
         gates.push(of_any(hands, |hand| rest(around, hand.name())));
@@ -92,6 +92,15 @@ fn stop(robot: &RobotView) -> Gate {
         closed("STOP", "STOP is latched: release it, at the top right.")
     } else {
         open("STOP", "Not pressed. Esc or space presses it.")
+    }
+}
+
+/// A run of touches that has the arm, or has left it for a while.
+fn run(around: &GraspAround) -> Option<Gate> {
+    let paused = "A run of touches is paused; it goes on from wherever the arm is left.";
+    match around.touches_first {
+        Some(why) => Some(closed("Run", why)),
+        None => around.touches_paused.then(|| open("Run", paused)),
     }
 }
 
@@ -176,7 +185,7 @@ fn places(around: &GraspAround) -> Gate {
     .into_iter()
     .filter_map(|(lacks, what)| lacks.then_some(what))
     .collect();
-    if let Some(said) = &around.eyes_off {
+    if let Some(said) = &around.in_doubt {
         return doubtful("Places", said.clone());
     }
     if lacks.is_empty() {
@@ -263,6 +272,35 @@ mod tests {
             assert!(gate.text.contains("where Right elbow is") && gate.text.contains(says), "{}", gate.text);
             assert!(!gate.text.contains(does_not_say), "{}", gate.text);
         }
+    }
+
+    #[test]
+    fn what_was_calibrated_and_is_in_doubt_is_no_green_light() {
+        let rig = Arc::new(Rig::built_in("nico").expect("comes with the program"));
+        let of = |in_doubt: Option<&str>| {
+            let calibrated = plumbline_model::StereoCalibration::bare(rig.eyes.cameras);
+            places(&GraspAround {
+                calibration: Some(Arc::new(calibrated)),
+                has_mount: true,
+                has_screen: true,
+                in_doubt: in_doubt.map(str::to_owned),
+                ..GraspAround::bare(&rig)
+            })
+        };
+        assert_eq!(of(None).state, GateState::Open);
+        let gate = of(Some("The place of the screen is in doubt."));
+        assert_eq!(
+            (gate.state, gate.text.as_str()),
+            (GateState::Doubtful, "The place of the screen is in doubt.")
+        );
+    }
+
+    #[test]
+    fn a_paused_run_of_touches_is_said_and_does_not_keep_from_grasping() {
+        let rig = Arc::new(Rig::built_in("nico").expect("comes with the program"));
+        let of = |touches_paused| run(&GraspAround { touches_paused, ..GraspAround::bare(&rig) });
+        assert_eq!(of(false), None);
+        assert!(of(true).is_some_and(|gate| gate.state == GateState::Open && gate.text.contains("paused")));
     }
 
     #[test]

@@ -55,12 +55,10 @@ impl MountWorkflow {
         if self.tour.is_some() || self.solving.is_some() || self.waiting.is_some() {
             return StepState::Running;
         }
-        match (&self.in_use, &around.calibration) {
-            (None, _) => StepState::NotDone,
-            (Some(mount), Some(eyes)) if !mount.made_with(&eyes.cameras) => StepState::Stale {
-                why: "The eyes were calibrated anew since the mount was solved. Solve it again.".to_owned(),
-            },
-            (Some(_), _) => StepState::Done,
+        match self.stale(around.calibration.as_deref(), around.is_eyes_known) {
+            Some(why) => StepState::Stale { why: why.to_owned() },
+            None if self.in_use.is_some() => StepState::Done,
+            None => StepState::NotDone,
         }
     }
 

@@ -47,6 +47,7 @@ impl Bench {
         };
         let around = MountAround {
             calibration: Some(Arc::new(StereoCalibration::bare(rig.eyes.cameras))),
+            is_eyes_known: true,
             rig,
             robot: Arc::new(robot),
             board: default_board(),

@@ -64,6 +64,8 @@ pub struct MountAround {
     pub robot: Arc<RobotView>,
     /// The calibration of the eyes; `None` before one was accepted.
     pub calibration: Option<Arc<StereoCalibration>>,
+    /// Whether it has been read which calibration of the eyes was accepted.
+    pub is_eyes_known: bool,
     /// The board in use.
     pub board: Chessboard,
     /// Whether eyes are open.
@@ -126,6 +128,12 @@ impl MountWorkflow {
     /// The mount in use; `None`: not read yet. Inside `None`: the nominal one is.
     pub fn accepted(&self) -> Option<Option<&Arc<MountCalibration>>> {
         self.is_known.then_some(self.in_use.as_ref())
+    }
+
+    /// Why the mount in use does not fit to the eyes any more, and what to do.
+    pub fn stale(&self, eyes: Option<&StereoCalibration>, is_eyes_known: bool) -> Option<&'static str> {
+        let mount = self.in_use.as_deref()?;
+        why_stale(eyes.map(|eyes| mount.made_with(&eyes.cameras)), is_eyes_known)
     }
 
     /// Views that are collected.
@@ -394,6 +402,18 @@ impl Workflow for MountWorkflow {
     }
 }
 
+/// Why a mount does not fit, `fits`: whether it was solved with the eyes in use; `None`: none are in use.
+fn why_stale(fits: Option<bool>, is_eyes_known: bool) -> Option<&'static str> {
+    match fits {
+        Some(true) => None,
+        Some(false) => Some("The eyes were calibrated anew since the mount was solved. Solve it again."),
+        // Before they are read nobody knows.
+        None => is_eyes_known.then_some(
+            "The eyes that the mount was solved with are not in use any more. Bring them back on the timeline, or calibrate them and then the mount again.",
+        ),
+    }
+}
+
 /// The eyes' calibration and the present posture, or why there is none.
 fn ready(around: &MountAround) -> Result<(Arc<StereoCalibration>, Posture), Refusal> {
     let calibration = around.calibration.clone().ok_or(Refusal::NotCalibrated)?;
@@ -409,4 +429,17 @@ fn head_view(look: &Look, name: String, posture: &Posture) -> Option<HeadView> {
     }
     let sighting = PairObservation { name, left: look.left.clone(), right: look.right.clone() };
     Some(HeadView::new(sighting, posture.clone()))
+}
+
+#[cfg(test)]
+mod stale_tests {
+    use super::why_stale;
+
+    #[test]
+    fn a_mount_goes_with_the_eyes_it_was_solved_with_and_with_no_others() {
+        assert_eq!(why_stale(Some(true), true), None);
+        assert!(why_stale(Some(false), true).is_some_and(|why| why.contains("calibrated anew")));
+        assert!(why_stale(None, true).is_some_and(|why| why.contains("not in use any more")));
+        assert_eq!(why_stale(None, false), None, "they are not read yet");
+    }
 }

@@ -18,6 +18,7 @@ use crate::eyes::{EyesAround, EyesWorkflow};
 use crate::gap::{GapAround, GapWorkflow};
 use crate::grasp::{GraspAround, GraspWorkflow};
 use crate::ground::World;
+use crate::ground::text::sentence;
 use crate::labels::{LabelsAround, LabelsWorkflow};
 use crate::live::LiveWorkflow;
 use crate::models::{ModelsAround, ModelsWorkflow};
@@ -163,6 +164,20 @@ impl State {
         moves || self.rooms.touch.of(self.arm_of).is_touching()
     }
 
+    /// Why places on the table are in doubt although all that they rest on was calibrated; a sentence.
+    fn places_in_doubt(&self, world: World) -> Option<String> {
+        let Rooms { eyes, mount, touch, .. } = &self.rooms;
+        let eyes = eyes.of(world);
+        let of_mount = || mount.of(world).stale(eyes.in_use().map(|eyes| &**eyes), eyes.accepted().is_some());
+        let of_screen = || {
+            let doubts = touch.of(world).placement()?.doubts();
+            let doubt = sentence(&format!("the place of the screen is in doubt, for {}", doubts.first()?));
+            Some(format!("{doubt} Touching its corners again, in step 3, tells."))
+        };
+        let first = eyes.does_not_hold().or_else(of_mount).map(str::to_owned);
+        first.or_else(of_screen)
+    }
+
     /// How far places have moved since drift is watched, for whoever judged the eyes.
     fn drifted(&self) -> Option<Drifted> {
         let (watch, told) = self.rooms.drift.newest(self.rooms.source.view().opened)?;
@@ -206,6 +221,7 @@ impl Neighbors<MountWorkflow> for State {
             rig: self.rig.clone(),
             robot: self.robot.clone(),
             calibration: eyes.in_use().cloned(),
+            is_eyes_known: eyes.accepted().is_some(),
             board: *eyes.board(),
             has_eyes: self.rooms.source.view().spec.is_some(),
             eyes_on_s: self.eyes_on_s(world),
@@ -290,7 +306,7 @@ impl Neighbors<GraspWorkflow> for State {
             robot: self.robot.clone(),
             calibration: eyes.of(world).in_use().cloned(),
             eyes_on_min: self.eyes_on_s(world).map(|on_s| on_s / 60.0),
-            eyes_off: eyes.of(world).does_not_hold().map(str::to_owned),
+            in_doubt: self.places_in_doubt(world),
             has_mount: mount.of(world).in_use().is_some(),
             has_screen: touch.of(world).screen().is_some(),
             corrections: Corrections {
@@ -305,6 +321,7 @@ impl Neighbors<GraspWorkflow> for State {
             found: detect.found().cloned(),
             in_experiment: trials.of(world).is_under_way(),
             touches_first: touch.of(world).in_the_way(),
+            touches_paused: touch.of(world).is_under_way(),
         }
     }
 }

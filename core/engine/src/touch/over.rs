@@ -29,6 +29,15 @@ pub(super) fn arm_in<'a>(rig: &'a Rig, screen: &Touchscreen, robot: &RobotView) 
     rig.arms.iter().find(is_in)
 }
 
+/// An arm with a hand on this screen or near it, in reach of it; `None`: none has, or it is not known.
+pub(super) fn arm_near<'a>(rig: &'a Rig, screen: &Touchscreen, robot: &RobotView) -> Option<&'a Arm> {
+    let is_near = |arm: &&Arm| {
+        let posture = robot.known(&arm.joints);
+        posture.is_some_and(|posture| !is_away(rig, arm, screen, posture, TO_REACH))
+    };
+    rig.arms.iter().find(is_near)
+}
+
 /// Whether every tip of an arm is beside the screen, or above it.
 pub(super) fn is_away(rig: &Rig, arm: &Arm, screen: &Touchscreen, posture: &Posture, room: Room) -> bool {
     let links = rig.description.forward(posture);

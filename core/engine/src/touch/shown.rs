@@ -6,6 +6,7 @@ use plumbline_model::counted;
 use plumbline_model::touch_plan::{Finger, Purpose};
 
 use super::figures::{error_m, figures};
+use super::over::arm_near;
 use super::plan::Aim;
 use super::record::Fate;
 use super::run::{Phase, Run, Task, UnderWay};
@@ -16,6 +17,7 @@ use super::view::{
 use super::workflow::{TouchAround, TouchWorkflow, source};
 use crate::ground::step::StepState;
 use crate::robot::TouchStage;
+use crate::robot::view::MotionState;
 
 fn touch_state(aim: &Aim, run: Option<&Run>) -> TouchState {
     let number = aim.touch.number;
@@ -125,7 +127,19 @@ impl TouchWorkflow {
             source: source(&around.robot),
             window: self.window.clone(),
             last_contact: self.last_contact,
+            near_screen: self.near_screen(around),
         }
+    }
+
+    /// Whose hand stays on the screen or near it while nothing moves it.
+    fn near_screen(&self, around: &TouchAround) -> Option<String> {
+        let robot = &around.robot;
+        let moves = self.is_touching() || matches!(robot.motion, MotionState::Moving { .. });
+        if moves || !robot.connection.is_connected() {
+            return None;
+        }
+        arm_near(&around.rig, self.screen().unwrap_or(&around.rig.touchscreen), robot)
+            .map(|arm| arm.title.clone())
     }
 
     fn phase(&self) -> TouchPhase {

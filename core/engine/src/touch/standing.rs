@@ -47,6 +47,11 @@ impl TouchWorkflow {
         self.run.as_ref().is_some_and(|run| run.phase == Phase::Working)
     }
 
+    /// Whether a run was begun and is not over: it moves the arm, waits or is paused.
+    pub fn is_under_way(&self) -> bool {
+        self.active_run().is_some()
+    }
+
     /// Why nothing else may use the arm because of a run, and what to do; a sentence.
     pub fn in_the_way(&self) -> Option<&'static str> {
         let run = self.run.as_ref().filter(|run| run.is_active())?;

@@ -60,6 +60,8 @@ pub struct TouchView {
     pub window: Option<ScreenWindow>,
     /// The newest contact, for showing it.
     pub last_contact: Option<ContactView>,
+    /// Title of the arm whose hand stays on the screen or near it, while nothing moves it.
+    pub near_screen: Option<String>,
 }
 
 /// Where contacts come from.

@@ -86,8 +86,8 @@ fn is_laid_out(view: &View) -> bool {
 }
 
 fn lay_out(view: &View, again: bool) -> Said {
-    let [x_m, y_m] = FIRST_PLACE_M.map(|place_m| (100.0 * place_m).round());
-    let place = format!("{x_m:.0} cm ahead of the robot and {:.0} cm to its right", -y_m);
+    let [x_mm, y_mm] = FIRST_PLACE_M.map(|place_m| (1000.0 * place_m).round());
+    let place = format!("{x_mm:.0} mm ahead of the robot and {:.0} mm to its right", -y_mm);
     let lay = Action::Commission(CommissionAction::LayOut);
     if !view.twin.running {
         let sentence = format!("Lay a tomato {place}, and take your hands away. Nothing moves yet.");

@@ -106,13 +106,11 @@ impl LongWork for EyesWork {
 
     fn is_quiet(&self) -> bool {
         match self {
-            Self::Capture(_)
-            | Self::Recognize(_)
-            | Self::Keep(_)
-            | Self::Restore(_)
-            | Self::Health(_)
-            | Self::Accept(_) => true,
+            Self::Capture(_) | Self::Recognize(_) | Self::Keep(_) | Self::Restore(_) | Self::Health(_) => {
+                true
+            }
             Self::CollectRecording(_)
+            | Self::Accept(_)
             | Self::Solve(_)
             | Self::Open(_)
             | Self::Export(_)

@@ -111,12 +111,17 @@ pub(super) fn reach_m(description: &Description) -> Vec<f64> {
     reach_m
 }
 
-/// "right_lower_arm" → "right lower arm", "l_thumb_intermediate_link" → "left thumb intermediate".
+/// "right_lower_arm" → "right lower arm", "l_thumb_intermediate_link" → "left thumb intermediate", "r_indexfinger" →
+/// "right index finger".
 pub(super) fn people_name(link: &str) -> String {
     let word = |word: &str| match word {
         "r" => "right".to_owned(),
         "l" => "left".to_owned(),
-        other => other.to_owned(),
+        // "indexfinger"
+        other => match other.strip_suffix("finger").filter(|which| !which.is_empty()) {
+            Some(which) => format!("{which} finger"),
+            None => other.to_owned(),
+        },
     };
     link.split('_').filter(|part| *part != "link" && !part.is_empty()).map(word).collect::<Vec<_>>().join(" ")
 }
