@@ -67,6 +67,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         return;
     };
     super::padded(ui, |ui| {
-        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| coverage_view(ui, coverage));
+        let height = ui.available_height();
+        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| coverage_view(ui, coverage, height));
     });
 }

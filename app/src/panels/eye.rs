@@ -11,7 +11,7 @@ use plumbline_widgets::overlay::{Mark, Overlay, PointShape};
 use plumbline_widgets::theme::Role;
 
 use super::{PanelContext, grasp, objects, picture, residuals, source_state};
-use crate::operator::{Pane, Screen};
+use crate::operator::{Pane, Screen, wanted_board};
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, eye: Eye) {
     let collecting = matches!(cx.screen, Screen::Collect | Screen::Mount);
@@ -121,7 +121,7 @@ fn probe_marks(cx: &PanelContext<'_>, eye: Eye) -> Overlay {
 fn board_marks(cx: &PanelContext<'_>, eye: Eye) -> Overlay {
     let eyes = &cx.view.eyes;
     let mut overlay = Overlay::new();
-    if let Some(wanted) = eyes.ghost.as_ref().filter(|_| cx.screen == Screen::Collect) {
+    if let Some(wanted) = wanted_board(cx.view).filter(|_| cx.screen == Screen::Collect) {
         let outline = if eye == Eye::Left { &wanted.left } else { &wanted.right };
         let outline_px: Vec<[f64; 2]> = outline.iter().map(at).collect();
         overlay.append(ghost(&outline_px, Ghost::Wanted, ""));

@@ -28,9 +28,11 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
                     ui.label(theme::strong(ui, "In use"));
                 }
             }
-            ui.add_space(space::S);
-            figures(ui, eyes, &calibration);
+            ui.add_space(space::XS);
+            // What can be done is in sight also in a low tile.
             buttons(ui, cx);
+            ui.add_space(space::S);
+            figures(ui, &cx.view.eyes, &calibration);
         });
     });
 }
@@ -133,7 +135,6 @@ fn buttons(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     if cx.view.eyes.proposal.is_none() {
         return;
     }
-    ui.add_space(space::M);
     ui.horizontal_wrapped(|ui| {
         for (action, text) in [(Action::Solve, "Solve again"), (Action::Discard, "Discard the proposal")] {
             let refusal = action.refusal(cx.view);

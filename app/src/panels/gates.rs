@@ -20,7 +20,7 @@ pub(crate) fn show(ui: &mut Ui, gates: &[Gate], view: &View, outbox: &mut Outbox
         ui.label(RichText::new(format!("{}: {sign}", gate.name)).color(role.color(tokens)));
         ui.label(theme::small(ui, gate.text.clone()));
         if let Some((label, screen)) = way_to(gate, view)
-            && ui.small_button(label).clicked()
+            && ui.button(label).clicked()
         {
             outbox.act(Action::Go(screen));
         }

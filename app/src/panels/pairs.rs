@@ -10,7 +10,7 @@ use plumbline_widgets::theme::{self, Role, space};
 
 use super::PanelContext;
 use crate::operator::words::eyes::{minutes_on, warmth};
-use crate::operator::{Action, RobotAction, hint_text};
+use crate::operator::{Action, RobotAction, capture_waits_for};
 
 const ROW: f32 = 24.0;
 /// A distance needs so much beside the name.
@@ -52,8 +52,8 @@ fn controls(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         };
         ui.label(theme::weak(ui, format!("Capturing by itself ended {when}.")));
     }
-    if let (true, Some(hint)) = (live, &cx.view.eyes.hint) {
-        ui.label(theme::weak(ui, hint_text(hint)));
+    if let (true, Some(hint)) = (live, capture_waits_for(cx.view)) {
+        ui.label(theme::weak(ui, hint));
     }
 }
 
@@ -143,7 +143,7 @@ fn pair_row(ui: &mut Ui, cx: &mut PanelContext<'_>, pair: &CollectedPair) {
             }
             // It stands under the mouse too; it must not run into the name.
             if let Some(place) = pair.place.filter(|_| ui.available_width() > DISTANCE) {
-                ui.label(theme::small(ui, format::depth(place.distance_m)));
+                ui.label(theme::small(ui, format!("≈ {}", format::depth(place.distance_m))));
             }
             if let Some(minutes) = minutes_on(&cx.view.eyes, &pair.name)
                 && ui.available_width() > WARMTH

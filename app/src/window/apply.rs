@@ -98,6 +98,7 @@ impl PlumblineWindow {
             }
             Action::Trials(TrialsAction::Export(format)) => self.ask_for(ctx, Question::Trials(format)),
             Action::Grid(GridAction::Open) => self.ask_for(ctx, Question::GridSession),
+            Action::Commission(CommissionAction::StartAnew) => self.ask = Some(Ask::CommissionAnew),
             Action::Commission(action) => self.act_on_commission(ctx, action),
             Action::Next if self.view.commission.is_on && self.commission_rest.is_on(ctx) => {
                 self.commission_rest.go_on(ctx);

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 
 use egui::{Align2, TextEdit, Ui, Vec2};
 use plumbline_engine::{
-    CameraDevice, EyesCommand, LabelsCommand, RobotCommand, SourceCommand, SourceSpec, View,
+    CameraDevice, CommissionCommand, EyesCommand, LabelsCommand, RobotCommand, SourceCommand, SourceSpec,
+    View,
 };
 use plumbline_widgets::NumberField;
 use plumbline_widgets::format;
@@ -50,6 +51,8 @@ pub enum Ask {
     CloseUnaccepted,
     /// Whether all joints may go limp.
     LetGo,
+    /// Whether commissioning is counted from the beginning.
+    CommissionAnew,
     /// Whether servos may be told for good to answer sooner.
     ShortenAnswers,
     /// Folder and classes of a new data set.
@@ -99,6 +102,7 @@ impl Ask {
             Self::CloseWhileMoving => close_while_moving(ui, view),
             Self::CloseUnaccepted => sheet_of_unaccepted(ui, view),
             Self::LetGo => let_go(ui),
+            Self::CommissionAnew => commission_anew(ui, view),
             Self::ShortenAnswers => shorten_answers(ui, view),
             Self::NewLabelSet { folder, classes } => new_label_set(ui, folder, classes),
             Self::ExportLerobot(ask) => ask.show(ui),
@@ -226,8 +230,28 @@ fn close_while_moving(ui: &mut Ui, view: &View) -> Asked {
     }
 }
 
+fn commission_anew(ui: &mut Ui, view: &View) -> Asked {
+    let spent = &view.commission.spent;
+    let about = format!(
+        "All eight steps count as not done, and {} min, {} and {} begin at zero. What was accepted stays in use; pairs that are collected stay.",
+        spent.time.as_secs() / 60,
+        format::count(spent.touches, "touch"),
+        format::count(spent.views, "view"),
+    );
+    title(ui, "Commission once more?", &about);
+    match buttons_with_care(ui, "Begin anew") {
+        Some(true) => Asked::Command(CommissionCommand::Start { anew: true }.into()),
+        Some(false) => Asked::Closed,
+        None => Asked::Open,
+    }
+}
+
 fn let_go(ui: &mut Ui) -> Asked {
-    title(ui, "Let all joints go limp?", "Both arms sink by their own weight: hold them, and keep clear.");
+    title(
+        ui,
+        "Let all joints go limp?",
+        "Both arms sink and the head nods, by their own weight: hold them, and keep clear.",
+    );
     match buttons_with_care(ui, "Let all go limp") {
         Some(true) => Asked::Command(RobotCommand::Torque { joints: Vec::new(), on: false }.into()),
         Some(false) => Asked::Closed,

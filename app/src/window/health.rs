@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use egui::{Align, Button, Layout, Panel, Popup, Response, Ui};
 use jiff::Timestamp;
-use plumbline_engine::view::{RecordingState, SourceStatus, StepState};
+use plumbline_engine::view::{RecordingState, SourceStatus, StepState, Subject};
 use plumbline_engine::{EyesCommand, View};
 use plumbline_model::duration;
 use plumbline_widgets::NumberField;
@@ -243,7 +243,11 @@ fn model_lamp(view: &View) -> Option<TopLamp> {
     if gap.model.effects.is_empty() {
         return None;
     }
-    let (health, reason) = standing(&gap.step);
+    let in_use = view.timeline.in_use.iter().find(|now| now.subject == Subject::Effects);
+    let (health, reason) = match in_use.filter(|now| !now.against.is_empty()) {
+        Some(now) => (Health::Warning, Some(now.against.clone())),
+        None => standing(&gap.step),
+    };
     // The lamp has little room; its screen says all of it.
     let named = gap.model.effects.iter().filter(|effect| effect.is_named).count();
     let value = if named > 0 { named.to_string() } else { "small shares".to_owned() };

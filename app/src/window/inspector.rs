@@ -12,7 +12,7 @@ use plumbline_widgets::theme::{self, Role, group_heading, space};
 
 use super::{PlumblineWindow, undo};
 use crate::operator::words::sources;
-use crate::operator::{Outbox, Screen, hint_text};
+use crate::operator::{Outbox, Screen, capture_waits_for, wanted_board};
 use crate::panels::{
     PanelState, chosen_fit, probe_readout, show_commission_inspector, show_drift_inspector,
     show_gap_inspector, show_grasp_inspector, show_handeye_inspector, show_labels_inspector,
@@ -227,14 +227,16 @@ fn source(ui: &mut Ui, view: &View) {
 fn collecting(ui: &mut Ui, view: &View, state: &mut PanelState, outbox: &mut Outbox) {
     let eyes = &view.eyes;
     group_heading(ui, "Next pair");
-    if let Some(hint) = &eyes.hint {
-        ui.label(hint_text(hint));
+    if let Some(hint) = capture_waits_for(view) {
+        ui.label(hint);
     }
-    match &eyes.ghost {
+    match wanted_board(view) {
         Some(ghost) => {
             ui.label(format!("Hold the board {}.", ghost.reason));
             key_value_grid(ui, "ghost", &place_rows(&ghost.place));
         }
+        // Nobody holds the board: the pane Coverage says what is missing.
+        None if eyes.ghost.is_some() => {}
         None if eyes.collected.is_empty() => {
             ui.label(theme::weak(ui, "The outline in both eyes will show where to hold the board."));
         }

@@ -51,7 +51,11 @@ impl Palette {
             )
         });
         let edit = TextEdit::singleline(&mut self.typed)
-            .hint_text("Type what you want to do")
+            .hint_text(if super::status_line::moves(view) {
+                "Type what you want to do (space stops what moves)"
+            } else {
+                "Type what you want to do"
+            })
             .desired_width(f32::INFINITY);
         let edit = ui.add(edit);
         edit.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Search commands"));

@@ -113,7 +113,19 @@ fn line_of(view: &View, screen: Screen) -> Line<'_> {
     match (failed, course(view)) {
         (Some(guidance), _) => Line::Guided { guidance, led: false },
         (None, Some(course)) => Line::Guided { guidance: of_course(view, screen, course), led: true },
-        (None, None) => Line::Guided { guidance: guidance(view, screen), led: false },
+        (None, None) => Line::Guided { guidance: with_what_moves(guidance(view, screen), view), led: false },
+    }
+}
+
+/// On a screen that says nothing of it: that the robot moves meanwhile, and what stops it.
+fn with_what_moves(guidance: Guidance, view: &View) -> Guidance {
+    let is_said = guidance.sentence.contains(KEYS) || !moves(view) || view.robot.rests_on_the_way;
+    match is_said {
+        true => guidance,
+        false => {
+            let sentence = format!("The robot moves meanwhile; {KEYS} {}", guidance.sentence);
+            Guidance { sentence, ..guidance }
+        }
     }
 }
 

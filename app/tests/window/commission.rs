@@ -238,6 +238,17 @@ fn touches_are_planned_begun_and_waited_for() {
     assert_eq!(label, "Next: plan touches to check");
     assert!(matches!(sent[..], [Command::Touch(TouchCommand::CorrectWith(None)), Command::Touch(_)]));
 
+    // A run that ended too early says why it is planned once more.
+    let mut early = view.clone();
+    let touch = Arc::make_mut(&mut early.touch);
+    (touch.phase, touch.counts.touched) = (TouchPhase::Finished, 11);
+    let (label, window, _) = press(early.clone());
+    assert_eq!(label, "Next: plan touches to learn from");
+    assert!(says(&window, "11 touches of the run before are too few: at least 12 are needed."));
+    Arc::make_mut(&mut early.touch).counts.touched = 12;
+    let (_, window, _) = press(early);
+    assert!(!says(&window, "too few"));
+
     let touch = Arc::make_mut(&mut view.touch);
     touch.phase = TouchPhase::Running { number: Some(3), doing: "above target 3".to_owned() };
     touch.counts.touched = 2;

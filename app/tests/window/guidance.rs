@@ -7,9 +7,10 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use plumbline::{PlumblineWindow, Screen, WindowSettings};
 use plumbline_engine::view::{
-    Connection, EyesView, JobState, JobView, ReplayView, RobotView, SourceStatus, SourceView, TouchPhase,
+    BoardPlace, Connection, EyesView, GhostBoard, JobState, JobView, MotionState, ReplayView, RobotView,
+    SourceStatus, SourceView, TouchPhase,
 };
-use plumbline_engine::{Command, EyesCommand, JobCommand, JobId, SourceCommand, View};
+use plumbline_engine::{Command, EyesCommand, JobCommand, JobId, SourceCommand, SourceSpec, View};
 
 use plumbline_model::touch_plan::PlanOptions;
 
@@ -138,6 +139,44 @@ fn what_failed_is_said_where_it_was_begun_and_not_beside_what_moves() {
     let plan = planned(PlanOptions::first(area()));
     let window = Fake::over(View { jobs, ..with_touch(plan) }).window(on(Screen::Touch));
     assert!(!shows(&window, "Dismiss") && says(&window, "arm touches the glass"));
+}
+
+#[test]
+fn a_screen_that_knows_nothing_of_it_says_that_the_robot_moves() {
+    let view = with_touch(running());
+    for (screen, says_it) in [(Screen::Drift, true), (Screen::Timeline, true), (Screen::Touch, false)] {
+        let window = Fake::over(view.clone()).window(on(screen));
+        assert_eq!(says(&window, "The robot moves meanwhile; Esc or space stops."), says_it, "{screen:?}");
+        assert!(says(&window, "Esc or space stops."), "{screen:?}");
+    }
+}
+
+#[test]
+fn limp_joints_under_stop_are_not_said_to_stand_still() {
+    let of = |motion| {
+        let robot = RobotView { stopped: true, motion, ..crate::made_up::connected() };
+        Fake::over(View { robot: Arc::new(robot), ..View::default() }).window(on(Screen::Robot))
+    };
+    let window = of(MotionState::Limp);
+    assert!(says(&window, "they sink where nobody holds them") && !says(&window, "nothing moves until"));
+    assert!(says(&of(MotionState::Holding { why: None }), "nothing moves until you press Release STOP"));
+}
+
+#[test]
+fn only_a_person_is_told_where_to_hold_the_board() {
+    let ghost = GhostBoard {
+        left: vec![],
+        right: vec![],
+        reason: "upper left, near".to_owned(),
+        place: BoardPlace { distance_m: 0.3, tilt_up_down_rad: 0.0, tilt_left_right_rad: 0.0 },
+    };
+    let eyes = Arc::new(EyesView { ghost: Some(Arc::new(ghost)), ..EyesView::default() });
+    let of = |spec: Option<SourceSpec>| {
+        let source = SourceView { status: SourceStatus::Running, spec, ..SourceView::default() };
+        let view = View { eyes: eyes.clone(), source: Arc::new(source), ..View::default() };
+        says(&Fake::over(view).window(on(Screen::Collect)), "Hold the board upper left, near.")
+    };
+    assert!(of(None) && !of(Some(SourceSpec::Twin)));
 }
 
 #[test]

@@ -12,6 +12,8 @@ use plumbline_engine::{Command, EyesCommand, TimelineCommand, TimelineFormat, Vi
 use crate::fake::{Fake, click, picture_folder, says, shows};
 use crate::made_up;
 
+const DOUBT: &str = "The place of the screen is in doubt.";
+
 fn on_timeline() -> WindowSettings {
     WindowSettings { screen: Screen::Timeline, ..WindowSettings::default() }
 }
@@ -53,6 +55,7 @@ pub fn results() -> TimelineView {
         figure: entries[at].after,
         since: Some(entries[at].at),
         entry: Some(entries[at].number),
+        against: if at == 2 { DOUBT.to_owned() } else { String::new() },
     };
     let nominal = InUseNow {
         subject: Subject::Effects,
@@ -60,6 +63,7 @@ pub fn results() -> TimelineView {
         figure: None,
         since: None,
         entry: None,
+        against: String::new(),
     };
     let in_use = [1, 2, 3, 4].map(now).into_iter().chain([nominal]).collect();
     TimelineView { is_known: true, in_use, entries: entries.into() }
@@ -93,6 +97,7 @@ fn each_entry_says_its_error_and_what_is_in_use_is_listed() {
         assert!(says(&window, text), "{text}");
     }
     assert!(says(&window, "the robot as it is described"));
+    assert!(says(&window, DOUBT), "what is in use and in doubt says so");
     assert!(says(&window, "6 entries. The newest, measured: 25 touches"));
 }
 

@@ -7,7 +7,7 @@ pub use grid::CoverageGrid;
 pub use histogram::Histogram;
 
 use egui::{Align2, Color32, Rect, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
-use plumbline_model::{Eye, listed};
+use plumbline_model::Eye;
 
 use crate::axis;
 use crate::colormap::Colormap;
@@ -67,9 +67,9 @@ impl Coverage {
     pub fn advice(&self) -> String {
         let mut missing = Vec::new();
         for eye in Eye::BOTH {
-            let regions = self.grid(eye).missing_regions();
-            if !regions.is_empty() {
-                missing.push(format!("{} of the {eye} image", listed(&regions)));
+            // The emptiest: the map shows the others.
+            if let Some(region) = self.grid(eye).missing_regions().first() {
+                missing.push(format!("{region} of the {eye} image"));
             }
         }
         if let Some(range) = self.distance_m.emptiest() {
@@ -92,8 +92,13 @@ fn range_text([low, high]: [f64; 2], quantity: Quantity) -> String {
     format!("{} to {}{gap}{}", number(low), number(high), quantity.unit())
 }
 
-/// Draws both images' coverage, the two histograms and the advice.
-pub fn coverage_view(ui: &mut Ui, coverage: &Coverage) {
+/// Room for the advice, the titles and the histograms beside the maps, pt.
+const BESIDE_MAPS: f32 = 190.0;
+/// Narrower maps show nothing any more, pt.
+const LEAST_MAP: f32 = 72.0;
+
+/// Draws the advice, both images' coverage and the two histograms, all within `height` (pt) where that is possible.
+pub fn coverage_view(ui: &mut Ui, coverage: &Coverage, height: f32) {
     // First, for below the pictures it is out of sight in a low window.
     ui.label(coverage.advice());
     ui.add_space(space::XS);
@@ -103,7 +108,9 @@ pub fn coverage_view(ui: &mut Ui, coverage: &Coverage) {
         for eye in Eye::BOTH {
             ui.vertical(|ui| {
                 ui.set_width(column);
-                heat_map(ui, coverage.grid(eye), eye, column);
+                let [w, h] = coverage.grid(eye).size_px().map(|n| n.max(1) as f32);
+                let fitting = (height - BESIDE_MAPS) * w / h;
+                heat_map(ui, coverage.grid(eye), eye, (column, column.min(fitting.max(LEAST_MAP))));
             });
         }
     });
@@ -121,14 +128,15 @@ const TICK_WIDTH: f32 = 30.0;
 /// A map that is this wide has room for words over it.
 const WORDY: f32 = 140.0;
 
-fn heat_map(ui: &mut Ui, grid: &CoverageGrid, eye: Eye, width: f32) {
+/// `column`: width of the title; `width`: that of the map.
+fn heat_map(ui: &mut Ui, grid: &CoverageGrid, eye: Eye, (column, width): (f32, f32)) {
     let title = if eye == Eye::Left { "Left eye" } else { "Right eye" };
     let share = format::percent(grid.fraction());
     let title_row = ui.horizontal(|ui| {
         ui.label(theme::small(ui, title));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             // Where there is no room for the word it would run into the title, and beyond the pane.
-            let text = if width < WORDY { share.clone() } else { format!("{share} covered") };
+            let text = if column < WORDY { share.clone() } else { format!("{share} covered") };
             ui.label(theme::small(ui, text));
         });
     });

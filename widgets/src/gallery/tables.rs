@@ -48,7 +48,7 @@ pub(super) fn coverage(ui: &mut Ui, _: &mut GalleryState) {
         coverage.distance_m.add(0.36 + 0.14 * sample::noise(pair + 80));
         coverage.tilt_rad.add(0.35 + 0.3 * sample::noise(pair + 120));
     }
-    coverage_view(ui, &coverage);
+    coverage_view(ui, &coverage, f32::INFINITY);
 }
 
 pub(super) fn table_map(ui: &mut Ui, _: &mut GalleryState) {

@@ -2,10 +2,11 @@
 
 use std::borrow::Cow;
 
-use plumbline_engine::view::{GateState, GraspPhase, TouchPhase};
+use plumbline_engine::view::{GateState, GraspPhase};
 use plumbline_engine::{Command, GraspCommand, HandStep, View};
 use serde::Serialize;
 
+use super::led_by;
 use crate::operator::words::grasp::made_room;
 
 /// Of grasping.
@@ -129,8 +130,8 @@ fn judged(view: &View) -> Option<String> {
 
 /// The first gate of the arm that is shut.
 fn arm_trouble(view: &View) -> Refusal {
-    if matches!(view.touch.phase, TouchPhase::Running { .. }) {
-        return Some("a run of touches moves the arm: pause it first".into());
+    if let Some(why) = led_by(view) {
+        return Some(why.into());
     }
     let of_arm = ["Robot", "STOP", "Arm"];
     let mut gates = view.grasp.gates.iter();

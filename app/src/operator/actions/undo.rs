@@ -92,10 +92,15 @@ fn of_boxes(view: &View) -> Result<Undo, NoUndo> {
 
 /// The newest change of any kind of result.
 fn of_any(view: &View) -> Result<Undo, NoUndo> {
-    let mut newest = view.timeline.entries.iter().rev().filter(|entry| view.timeline.is_newest(entry));
-    newest
-        .find_map(|entry| of_result(view, entry.subject).ok())
-        .ok_or_else(|| "nothing was put in use that could be taken back".into())
+    let newest = view.timeline.entries.iter().rev().filter(|entry| view.timeline.is_newest(entry));
+    for entry in newest {
+        match of_result(view, entry.subject) {
+            // What cannot be taken back just now is not passed over for what is older.
+            Err(_) if entry.subject != Subject::Screen || !is_under_way(&view.touch.phase) => {}
+            result => return result,
+        }
+    }
+    Err("nothing was put in use that could be taken back".into())
 }
 
 /// What is in use of a kind of result.
@@ -260,6 +265,7 @@ mod tests {
             figure: None,
             since: Some(entry.at),
             entry: Some(entry.number),
+            against: String::new(),
         });
         let timeline =
             TimelineView { is_known: true, entries: entries.into(), in_use: now.into_iter().collect() };

@@ -3,6 +3,7 @@
 use plumbline_engine::View;
 use plumbline_engine::view::{GapView, ShownFinding};
 
+use super::onward::after_the_gap;
 use super::sentence::{Guidance, say};
 use crate::operator::snapshot::gap::{Finding, Verdict};
 use crate::operator::words::gap::{add_label, heading, on_held_out, touch_label};
@@ -56,14 +57,14 @@ fn found(view: &View, shown: &ShownFinding) -> Guidance {
     let touch = |guidance: Guidance| guidance.then(touch_label(view), Action::Gap(GapAction::NextExperiment));
     match finding.verdict {
         Verdict::NoGap if !finding.is_all_clear() && experiment => touch(guidance),
-        Verdict::NoGap => guidance,
+        Verdict::NoGap => after_the_gap(view, guidance),
         Verdict::NotInLibrary if experiment => touch(guidance.warn()),
-        Verdict::NotInLibrary => guidance.warn(),
+        Verdict::NotInLibrary => after_the_gap(view, guidance.warn()),
         Verdict::Class if unsure && experiment && !addable.is_empty() => touch(guidance),
         _ if !wanted.is_empty() => guidance.then(add_label(view, &wanted), Action::Gap(GapAction::Add)),
         _ if shown.added.iter().any(|added| *added) => added(view, shown, experiment),
         _ if experiment => touch(guidance),
-        _ => guidance,
+        _ => after_the_gap(view, guidance),
     }
 }
 

@@ -1,7 +1,7 @@
 //! What to do next with grasping: one button, named by what it does.
 
 use plumbline_engine::view::{
-    GraspOutcome, GraspPhase, GraspRun, GraspView, InHand, LampState, SinceHeld, TrialsPhase,
+    GateState, GraspOutcome, GraspPhase, GraspRun, GraspView, InHand, LampState, SinceHeld, TrialsPhase,
 };
 use plumbline_engine::{HandStep, View};
 use plumbline_widgets::format;
@@ -67,8 +67,12 @@ fn idle(view: &View) -> Guidance {
             format!(" {}, {} in all.", turns_most(joint), format::degrees(*turn_rad))
         });
         let label = format!("Grasp {} with {by}", plan.object.to_lowercase());
-        return say(format!("Shown as a ghost.{most} It takes about {} s.", plan.duration.as_secs()))
-            .then(label, Action::Grasp(GraspAction::Grasp));
+        let shown = format!("Shown as a ghost.{most} It takes about {} s.", plan.duration.as_secs());
+        let guidance = match in_doubt(view) {
+            true => say(format!("{shown} Its places are in doubt: the list at the right says why.")).warn(),
+            false => say(shown),
+        };
+        return guidance.then(label, Action::Grasp(GraspAction::Grasp));
     }
     let waits = grasp.run.as_ref().filter(|run| run.outcome.is_some() && run.told.is_none());
     let label = format!("Grasp {} with {by}", object_of(grasp));
@@ -88,6 +92,11 @@ fn idle(view: &View) -> Guidance {
         _ => say("Plan shows what would be sent; Grasp plans and moves the arm at once.")
             .then(label, Action::Grasp(GraspAction::Grasp)),
     }
+}
+
+/// Whether something speaks against where things are taken to lie.
+fn in_doubt(view: &View) -> bool {
+    view.grasp.gates.iter().any(|gate| gate.name == "Places" && gate.state == GateState::Doubtful)
 }
 
 /// What is in a hand has to leave it before anything else is grasped.

@@ -75,8 +75,9 @@ pub fn said(proposal: &HandEyeSummary) -> Guidance {
     match proposal.error_m() {
         Some([before_m, after_m]) => {
             let (before, after) = (format::mm(before_m), format::mm(after_m));
+            let which = if proposal.hands.len() > 1 { "The worse hand" } else { "The hand" };
             let guidance = say(format!(
-                "The hand is seen {before} beside its arm, {after} with what was learned (looks that were not used). \
+                "{which} is seen {before} beside its arm, {after} with what was learned (looks that were not used). \
                  Accepting moves nothing."
             ));
             if after_m > before_m { guidance.warn() } else { guidance }

@@ -23,8 +23,10 @@ pub use touch::{
     check_in_words, done_of, go_on, is_screen_to_be_decided, minutes, waiting_touch, wanted, what_moves,
 };
 
-use plumbline_engine::View;
-use plumbline_engine::view::{CaptureHint, Connection, EyesView, Proposal, SourceStatus};
+use plumbline_engine::view::{
+    CaptureHint, Connection, EyesView, GhostBoard, MotionState, Proposal, SourceStatus,
+};
+use plumbline_engine::{SourceSpec, View};
 use plumbline_widgets::format;
 
 use super::words::more_doubts;
@@ -82,8 +84,14 @@ fn stopped(view: &View, screen: Screen) -> Option<Guidance> {
         Screen::Live | Screen::Mount | Screen::Touch | Screen::HandEye | Screen::Grasp | Screen::Robot
     );
     let connected = view.robot.connection.is_connected();
-    (moves && connected && view.robot.stopped)
-        .then(|| say("Stopped: nothing moves until you press Release STOP, at the top right.").warn())
+    let sinks = view.robot.motion == MotionState::Limp;
+    let said = match sinks {
+        true => {
+            "Stopped, and the joints are limp: they sink where nobody holds them. Press Release STOP, at the top right, then hold all joints."
+        }
+        false => "Stopped: nothing moves until you press Release STOP, at the top right.",
+    };
+    (moves && connected && view.robot.stopped).then(|| say(said).warn())
 }
 
 /// What is wrong or not yet there with the source; `None` when it delivers.
@@ -126,7 +134,10 @@ fn commissioning(view: &View) -> Guidance {
     }
     let start = Action::Commission(CommissionAction::Start);
     match commission.began {
-        _ if commission.is_done() => say("All steps are done.").then("Grasp", Action::Go(Screen::Grasp)),
+        _ if commission.is_done() => match &view.grasp.held {
+            Some(held) => grasp::in_hand(held, None),
+            None => say("All steps are done.").then("Grasp", Action::Go(Screen::Grasp)),
+        },
         Some(_) => say("Commissioning goes on where it was. The button moves nothing.")
             .then("Next: go on with commissioning", start),
         None => {
@@ -228,9 +239,32 @@ fn collect(view: &View) -> Guidance {
         };
         return say(said).then(format!("Solve {}", format::count(count, "pair")), Action::Solve);
     }
-    let wanted = eyes.ghost.as_ref().map_or_else(String::new, |g| format!(" Next: {}.", g.reason));
-    say(format!("{} collected. {}{wanted}", format::count(count, "pair"), hint_sentence(eyes)))
-        .then("Capture pair", Action::Capture)
+    let wanted = wanted_board(view).map_or_else(String::new, |g| format!(" Next: {}.", g.reason));
+    say(format!(
+        "{} collected. {}{wanted}",
+        format::count(count, "pair"),
+        capture_waits_for(view).unwrap_or_default()
+    ))
+    .then("Capture pair", Action::Capture)
+}
+
+/// Whether a person holds the board before the eyes: not where it is shown by the twin, or was shown to a recording.
+fn is_held_by_a_person(view: &View) -> bool {
+    view.source.replay.is_none() && view.source.spec != Some(SourceSpec::Twin)
+}
+
+/// Where a person is to hold the board next; `None`: nowhere in particular, or nobody holds it.
+pub fn wanted_board(view: &View) -> Option<&GhostBoard> {
+    view.eyes.ghost.as_deref().filter(|_| is_held_by_a_person(view))
+}
+
+/// What capturing waits for, as a sentence for who collects.
+pub fn capture_waits_for(view: &View) -> Option<String> {
+    let hint = view.eyes.hint.as_ref()?;
+    Some(match hint {
+        CaptureHint::NothingNew if !is_held_by_a_person(view) => "The board has been here.".to_owned(),
+        hint => hint_text(hint),
+    })
 }
 
 /// Squares of the board that was recognized, if it is not the chosen one.
@@ -252,13 +286,6 @@ fn collect_label(view: &View) -> String {
 
 fn collect_action(view: &View) -> Action {
     if view.source.replay.is_some() { Action::CollectRecording } else { Action::Capture }
-}
-
-fn hint_sentence(eyes: &EyesView) -> String {
-    match &eyes.hint {
-        None => String::new(),
-        Some(hint) => hint_text(hint),
-    }
 }
 
 /// What capturing waits for, as a sentence.

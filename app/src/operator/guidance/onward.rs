@@ -34,6 +34,17 @@ pub(super) fn after_the_mount(view: &View, said: &str) -> Option<Guidance> {
     Some(say(format!("{said} Next: {next}.")).then(label, Action::Go(screen)))
 }
 
+/// After a search that leaves nothing to add: to what is left.
+pub(super) fn after_the_gap(view: &View, guidance: Guidance) -> Guidance {
+    if !view.robot.connection.is_connected() {
+        return guidance;
+    }
+    match view.handeye.step == StepState::Done {
+        true => guidance.then("Go to Grasp", Action::Go(Screen::Grasp)),
+        false => guidance.then("Go to Hand-eye", Action::Go(Screen::HandEye)),
+    }
+}
+
 /// Where what a gate lacks, or has in doubt, is made: "Calibrate the eyes", and the screen.
 pub fn way_to(gate: &Gate, view: &View) -> Option<(&'static str, Screen)> {
     if gate.state == GateState::Open || gate.name != "Places" {
@@ -50,12 +61,16 @@ pub fn way_to(gate: &Gate, view: &View) -> Option<(&'static str, Screen)> {
 
 /// To grasping, where the eyes that lead there are still good.
 pub(super) fn to_grasping(view: &View, said: &str) -> Guidance {
-    match &view.eyes.health.does_not_hold {
-        Some(_) => say(format!(
-            "{said} Before grasping: the eyes see places elsewhere by now, calibrate them again."
-        ))
-        .warn()
-        .then("Calibrate the eyes again", Action::Go(Screen::Collect)),
-        None => say(format!("{said} Next: grasp.")).then("Go to Grasp", Action::Go(Screen::Grasp)),
+    if view.eyes.health.does_not_hold.is_some() {
+        let first = "Before grasping: the eyes see places elsewhere by now, calibrate them again.";
+        return say(format!("{said} {first}"))
+            .warn()
+            .then("Calibrate the eyes again", Action::Go(Screen::Collect));
     }
+    if let StepState::Stale { why } = &view.mount.step {
+        return say(format!("{said} Before grasping: {why}"))
+            .warn()
+            .then("Go to Mount", Action::Go(Screen::Mount));
+    }
+    say(format!("{said} Next: grasp.")).then("Go to Grasp", Action::Go(Screen::Grasp))
 }

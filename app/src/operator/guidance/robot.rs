@@ -1,7 +1,7 @@
 //! What to do next with the robot and with the mount of its eyes.
 
 use plumbline_engine::view::{
-    CaptureHint, Connection, MotionState, RobotView, SourceStatus, StepState, TourWaits,
+    CaptureHint, Connection, MotionState, Preview, RobotView, SourceStatus, StepState, TourWaits,
 };
 use plumbline_engine::{SourceSpec, View};
 use plumbline_widgets::format;
@@ -9,7 +9,7 @@ use plumbline_widgets::format;
 use super::onward;
 use super::sentence::{Guidance, say};
 use crate::operator::words::mount;
-use crate::operator::words::robot::{move_sentence, moved_name, silent_together};
+use crate::operator::words::robot::{is_close, move_sentence, moved_name, silent_together};
 use crate::operator::{Action, MountAction, RobotAction, Screen};
 
 /// What keeps the robot from being moved; `None` when it is connected and stands.
@@ -90,9 +90,7 @@ pub(super) fn robot(view: &View) -> Guidance {
         return with_way_back(guidance, view);
     }
     if let Some(preview) = &robot.preview {
-        let guidance =
-            say(move_sentence(preview)).then(moved_name(preview), Action::Robot(RobotAction::Move));
-        return if preview.path.is_err() { guidance.warn() } else { guidance };
+        return shown(preview);
     }
     if let Some(why) = &robot.refusal {
         return say(why.clone()).warn();
@@ -111,9 +109,13 @@ pub(super) fn robot(view: &View) -> Guidance {
 }
 
 fn shown_move(robot: &RobotView) -> Option<Guidance> {
-    let preview = robot.preview.as_ref()?;
+    robot.preview.as_ref().map(shown)
+}
+
+/// What the move does; one that passes close by something is no matter of course.
+fn shown(preview: &Preview) -> Guidance {
     let guidance = say(move_sentence(preview)).then(moved_name(preview), Action::Robot(RobotAction::Move));
-    Some(if preview.path.is_err() { guidance.warn() } else { guidance })
+    if is_close(preview) { guidance.warn() } else { guidance }
 }
 
 /// Screens with a scene can show a move too; it is run and watched there as well.

@@ -137,7 +137,10 @@ fn makes_room(view: &View) -> &'static str {
 /// What starting does: "Touch 80 targets".
 pub fn start_label(plan: &PlanView) -> String {
     match plan.options.purpose {
-        Purpose::PlaceScreen => format!("Touch the corners, {}", format::count(plan.reachable, "touch")),
+        Purpose::PlaceScreen => {
+            let middle = if plan.options.patterns.len() > 1 { " and the middle" } else { "" };
+            format!("Touch the corners{middle}, {}", format::count(plan.reachable, "touch"))
+        }
         Purpose::Train | Purpose::Check => format!("Touch {}", format::count(plan.reachable, "target")),
     }
 }
@@ -428,6 +431,7 @@ mod tests {
                 figure: Some(Figure::Meters(0.8e-3)),
                 since: None,
                 entry: None,
+                against: String::new(),
             };
             Arc::make_mut(&mut view.timeline).in_use = Arc::from([effects]);
             view.touch = Arc::new(TouchView { correct_with, ..TouchView::default() });

@@ -9,18 +9,28 @@ pub fn moved_name(preview: &Preview) -> String {
     format!("Move there: {}, {}", preview.title, seconds(preview.duration.as_secs_f64()))
 }
 
+/// An arm that errs by centimeters may touch what it passes so close, m.
+const CLOSE_M: f64 = 5e-3;
+
+/// Whether the move cannot be done, or passes close by something.
+pub fn is_close(preview: &Preview) -> bool {
+    preview.path.as_ref().map_or(true, |check| check.smallest_m < CLOSE_M)
+}
+
 /// What the move would do and how near it comes to something.
 pub fn move_sentence(preview: &Preview) -> String {
     let turns = preview.largest_turn.as_ref().map_or_else(String::new, |(joint, by_rad)| {
         format!(" {}, by {}.", turns_most(joint), whole_degrees(*by_rad))
     });
     match &preview.path {
-        Ok(check) => format!(
-            "Shown as a ghost: {}.{turns} It keeps {} between {}.",
-            preview.title,
-            format::mm(check.smallest_m),
-            check.between
-        ),
+        Ok(check) => {
+            let only = if is_close(preview) { "only " } else { "" };
+            let free = format::mm(check.smallest_m);
+            format!(
+                "Shown as a ghost: {}.{turns} It keeps {only}{free} between {}.",
+                preview.title, check.between
+            )
+        }
         Err(why) => format!("{} cannot be done: {why}", preview.title),
     }
 }

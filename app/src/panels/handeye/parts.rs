@@ -60,7 +60,7 @@ fn came_of_it(ui: &mut Ui, view: &HandEyeView, summary: &HandEyeSummary) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = space::L;
         if let Some([before_m, after_m]) = summary.error_m() {
-            big_figure(ui, "hand beside its arm, before", &format::mm(before_m), Role::Ink);
+            big_figure(ui, "worse hand beside its arm, before", &format::mm(before_m), Role::Ink);
             let role = if after_m > before_m { Role::Warning } else { Role::Accepted };
             big_figure(ui, &format!("after, {what}"), &format::mm(after_m), role);
         }

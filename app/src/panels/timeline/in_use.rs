@@ -8,7 +8,7 @@ use plumbline_widgets::theme::{self, group_heading, space};
 use crate::operator::TimelineAction;
 use crate::operator::words::clock;
 use crate::operator::words::timeline::figure;
-use crate::panels::parts::action_button;
+use crate::panels::parts::{action_button, warning};
 use crate::panels::{PanelContext, padded};
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
@@ -26,6 +26,9 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
                 let details: Vec<String> = now.figure.map(figure).into_iter().chain(since).collect();
                 if !details.is_empty() {
                     ui.label(theme::small(ui, details.join(" · ")));
+                }
+                if !now.against.is_empty() {
+                    warning(ui, &now.against);
                 }
                 ui.add_space(space::S);
             }

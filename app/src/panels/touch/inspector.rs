@@ -35,6 +35,9 @@ fn chosen(ui: &mut Ui, view: &View, one: &TouchState, next: bool, outbox: &mut O
     match &one.outcome {
         TouchOutcome::Unreachable(_) | TouchOutcome::Missed(_) => warning(ui, &words::outcome(one)),
         TouchOutcome::Touched => {}
+        TouchOutcome::Waiting if view.touch.phase == TouchPhase::Finished => {
+            ui.label(theme::weak(ui, "Never made"));
+        }
         _ => {
             ui.label(theme::weak(ui, crate::operator::words::capitalized(&words::outcome(one))));
         }

@@ -46,8 +46,9 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
 fn legend(ui: &mut Ui, touch: &TouchView) {
     let counts = &touch.counts;
     let to_come = touch.touches.iter().filter(|one| one.outcome == TouchOutcome::Waiting).count();
+    let to_come_name = if touch.phase == TouchPhase::Finished { "never made" } else { "to come" };
     let all = [
-        (to_come, "to come", Role::Predicted),
+        (to_come, to_come_name, Role::Predicted),
         (counts.touched, "touched", Role::Measured),
         (counts.missed, "no contact", Role::Warning),
         (counts.skipped + counts.rejected, "left out", Role::NoiseFloor),

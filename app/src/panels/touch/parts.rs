@@ -24,7 +24,8 @@ pub fn next_touch(touch: &TouchView) -> Option<usize> {
     if let TouchPhase::Running { number, .. } = touch.phase {
         return number;
     }
-    waiting_touch(touch)
+    // What was not made when the run ended is not next.
+    waiting_touch(touch).filter(|_| touch.phase != TouchPhase::Finished)
 }
 
 /// A planned touch by its number.

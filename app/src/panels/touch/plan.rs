@@ -122,7 +122,12 @@ fn figures(ui: &mut Ui, plan: &PlanView, planned: usize) {
         big_figure(ui, "takes about", &minutes(plan.duration), Role::Ink);
         if let Some(score) = &plan.score {
             let seen = score.seen.iter().filter(|effect| effect.is_seen()).count();
-            big_figure(ui, "causes it can notice", &format!("{seen} of {}", score.candidates), Role::Ink);
+            big_figure(
+                ui,
+                "causes of misses it shows",
+                &format!("{seen} of {}", score.candidates),
+                Role::Ink,
+            );
         }
     });
 }

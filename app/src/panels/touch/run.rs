@@ -51,7 +51,9 @@ fn head(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     if cx.state.touch.finishing && is_under_way(&cx.view.touch.phase) {
         ui.label(theme::small(ui, FINISHES));
     }
-    let Some(arm) = cx.view.touch.near_screen.clone() else { return };
+    // What holds something has more to do than to go home.
+    let near = cx.view.touch.near_screen.clone().filter(|_| cx.view.grasp.held.is_none());
+    let Some(arm) = near else { return };
     ui.horizontal_wrapped(|ui| {
         ui.label(theme::weak(ui, format!("{arm} stays at the screen.")));
         action_button(ui, cx, RobotAction::ShowHome, RobotAction::ShowHome.label());
@@ -151,7 +153,7 @@ fn finished(ui: &mut Ui, cx: &mut PanelContext<'_>) {
 }
 
 /// What ending a run early does.
-const FINISHES: &str = "Ends the run with what there is: the session stays, and so does the arm, where it is. A screen on a block is asked for first.";
+const FINISHES: &str = "Ends the run with what there is: the session stays, and so does the arm, where it is. Where the screen stands on a block you are asked to take that away first.";
 
 /// Asks once more in place: what is left of the plan would have to be begun anew.
 fn finish_button(ui: &mut Ui, cx: &mut PanelContext<'_>) {

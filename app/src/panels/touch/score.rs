@@ -12,14 +12,18 @@ const ROWS: usize = 12;
 pub fn show(ui: &mut Ui, score: &PlanScore) {
     let seen = score.seen.iter().filter(|effect| effect.is_seen()).count();
     ui.add_space(space::XS);
-    if let Some(sentence) = sentence(score, seen) {
-        ui.label(theme::weak(ui, sentence));
+    if seen == 0 {
+        let none = "No cause of errors would stand out of the noise: more targets are needed.";
+        ui.label(theme::weak(ui, none));
     }
     if let Some(advice) = score.advice.first() {
         ui.label(theme::weak(ui, format!("To learn more: {}", uncapitalized(&advice.sentence))));
     }
     let shown = CollapsingHeader::new("What the touches will tell").id_salt("plan score");
     shown.show(ui, |ui| {
+        if seen > 0 {
+            ui.label(theme::small(ui, told_apart(score, seen)));
+        }
         ui.label(theme::small(ui, "Cause, and how far a usual one stands out of the noise"));
         for effect in score.seen.iter().take(ROWS) {
             row(ui, effect);
@@ -31,17 +35,14 @@ pub fn show(ui: &mut Ui, score: &PlanScore) {
     });
 }
 
-fn sentence(score: &PlanScore, seen: usize) -> Option<String> {
-    if seen == 0 {
-        return Some("No cause of errors would stand out of the noise: more targets are needed.".to_owned());
-    }
+/// A mixture of causes is told where no other one looks like it: a sum over all of them, not a part of those that show.
+fn told_apart(score: &PlanScore, seen: usize) -> String {
     let alike: usize = score.alike.iter().map(Vec::len).sum();
-    // A mixture of causes is told where no other one looks like it: a sum over all of them, not a part of the figure above.
-    let told = format!("These touches tell {} of causes apart", format::count(score.directions, "mixture"));
-    Some(match alike {
-        0 => format!("{told}."),
-        _ => format!("Of the {seen}, {alike} look like another one on the glass. {told}."),
-    })
+    let told = format!("These touches tell {} of causes apart.", format::count(score.directions, "mixture"));
+    match alike {
+        0 => told,
+        _ => format!("Of the {seen}, {alike} look like another one on the glass. {told}"),
+    }
 }
 
 fn row(ui: &mut Ui, effect: &EffectVisibility) {

@@ -6,11 +6,6 @@ use super::view::{CommissionDone, CommissionFigure, CommissionState, CommissionS
 use crate::ground::Time;
 use crate::touch::RunStanding;
 
-/// Fewer touches tell too little of what makes the arm miss.
-pub const LEAST_TOUCHES: usize = 12;
-/// Fewer touches check nothing.
-pub const LEAST_CHECKED: usize = 5;
-
 /// All steps in their order.
 pub fn steps(around: &CommissionAround, kept: Option<&Kept>) -> [CommissionStepView; 8] {
     let mut first_open = None;

@@ -5,6 +5,11 @@ use std::time::Duration;
 
 use jiff::Timestamp;
 
+/// Fewer touches tell too little of what makes the arm miss.
+pub const LEAST_TOUCHES: usize = 12;
+/// Fewer touches check nothing.
+pub const LEAST_CHECKED: usize = 4;
+
 /// Commissioning.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CommissionView {

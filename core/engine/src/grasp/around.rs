@@ -45,8 +45,8 @@ pub struct GraspAround {
     pub found: Option<Arc<DetectionsView>>,
     /// Whether an experiment makes its attempts.
     pub in_experiment: bool,
-    /// Why a run of touches comes first, and what to do; a sentence.
-    pub touches_first: Option<&'static str>,
+    /// Why a run of touches, or a look at the hands, comes first, and what to do; a sentence.
+    pub goes_first: Option<&'static str>,
     /// Whether a run of touches is paused: it goes on after what is done here.
     pub touches_paused: bool,
 }
@@ -83,7 +83,7 @@ impl GraspAround {
             own_eyes: true,
             found: None,
             in_experiment: false,
-            touches_first: None,
+            goes_first: None,
             touches_paused: false,
         }
     }

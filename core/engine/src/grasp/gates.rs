@@ -98,7 +98,7 @@ fn stop(robot: &RobotView) -> Gate {
 /// A run of touches that has the arm, or has left it for a while.
 fn run(around: &GraspAround) -> Option<Gate> {
     let paused = "A run of touches is paused; it goes on from wherever the arm is left.";
-    match around.touches_first {
+    match around.goes_first {
         Some(why) => Some(closed("Run", why)),
         None => around.touches_paused.then(|| open("Run", paused)),
     }
@@ -242,11 +242,11 @@ mod tests {
 
     #[test]
     fn nothing_is_grasped_while_a_run_of_touches_moves_the_arm() {
-        let connected = |touches_first| {
+        let connected = |goes_first| {
             let still = around(0.0, 31.0);
             let connection = Connection::Connected { to: "twin".to_owned(), twin: true };
             let robot = Arc::new(RobotView { connection, ..(*still.robot).clone() });
-            GraspAround { robot, touches_first, ..still }
+            GraspAround { robot, goes_first, ..still }
         };
         let run = |around: &GraspAround| {
             let gates = gates(around, HandChoice::Auto, Method::M5);

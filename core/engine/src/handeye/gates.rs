@@ -41,6 +41,9 @@ fn gate(name: &'static str, is_open: bool, [open, shut]: [&str; 2]) -> Gate {
 fn calibrated(around: &HandEyeAround) -> Gate {
     let grasp = &around.grasp;
     let is_open = grasp.calibration.is_some() && grasp.has_mount && grasp.has_screen;
+    if let Some(why) = grasp.in_doubt.as_ref().filter(|_| is_open) {
+        return Gate { name: "Places", state: GateState::Doubtful, text: why.clone() };
+    }
     let shut = match (grasp.calibration.is_some(), grasp.has_mount) {
         (false, _) => "The lenses are not calibrated: calibrate the eyes first.",
         (true, false) => "How the eyes sit in the head was not measured: calibrate the mount first.",

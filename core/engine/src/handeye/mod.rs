@@ -18,4 +18,4 @@ mod workflow;
 
 pub use around::HandEyeAround;
 pub use kept::{FILE, Kept, KeptError};
-pub use workflow::HandEyeWorkflow;
+pub use workflow::{HandEyeWorkflow, is_of_other_eyes};

@@ -88,11 +88,11 @@ pub struct HandEyeSummary {
 }
 
 impl HandEyeSummary {
-    /// How far the hand that touched is seen from where its arm has it, rms on looks that were not used, before
-    /// and after, m.
+    /// How far a hand is seen from where its arm has it, rms on looks that were not used, before and after, m: of the
+    /// hand that is worse after.
     pub fn error_m(&self) -> Option<[f64; 2]> {
-        let (_, figures) = self.hands.first()?;
-        let figures = figures.figures()?;
-        Some([figures.before_m?, figures.after_m?])
+        let of_hands = self.hands.iter().filter_map(|(_, outcome)| outcome.figures());
+        let errors = of_hands.filter_map(|figures| Some([figures.before_m?, figures.after_m?]));
+        errors.max_by(|[_, a_m], [_, b_m]| a_m.total_cmp(b_m))
     }
 }

@@ -7,6 +7,7 @@ use jiff::Timestamp;
 use plumbline_effects::RigModel;
 use plumbline_handeye::Tied;
 use plumbline_model::StereoFrame;
+use plumbline_model::robot::Rig;
 
 use super::around::HandEyeAround;
 use super::command::HandEyeCommand;
@@ -70,6 +71,11 @@ impl HandEyeWorkflow {
         if self.running.is_some() {
             self.sights.put(frame);
         }
+    }
+
+    /// Whether a look is under way.
+    pub fn is_looking(&self) -> bool {
+        self.running.is_some()
     }
 
     /// A model that was accepted; told once.
@@ -176,7 +182,9 @@ impl HandEyeWorkflow {
         if self.running.is_some() {
             return StepState::Running;
         }
+        let is_of_others = is_of_other_eyes(around.added.as_ref(), around.grasp.model.rig());
         match (&self.kept, self.in_use(around.added.as_ref())) {
+            (_, Some(_)) if is_of_others => StepState::Stale { why: OTHER_EYES.to_owned() },
             (_, Some(_)) => StepState::Done,
             (Some(_), None) => StepState::Stale { why: STALE.to_owned() },
             (None, None) => StepState::NotDone,
@@ -184,6 +192,13 @@ impl HandEyeWorkflow {
     }
 }
 
+/// Whether something of the eyes in a model was found with others than this robot's: it is not in force then.
+pub fn is_of_other_eyes(added: Option<&Arc<RigModel>>, rig: &Rig) -> bool {
+    added.is_some_and(|model| !model.effects_of_other_eyes(rig).is_empty())
+}
+
+/// What is not in force.
+const OTHER_EYES: &str = "The hands were looked at with another calibration or mount of the eyes than the one in use. Bring that back on the timeline, or look again.";
 /// What the model in use lost.
 const STALE: &str = "The model in use was learned anew since the eyes looked at the hands. Look again.";
 

@@ -114,8 +114,8 @@ pub fn other_eyes(effects: &[&ModelEffect]) -> Option<String> {
     let titles: Vec<String> = effects.iter().map(title).collect();
     (!titles.is_empty()).then(|| {
         format!(
-            "Not in force, for they were found with another mount or calibration of the eyes, which now holds what \
-             they explained: {}. Search in Gap again.",
+            "Left out of the model while these eyes are in use, for it was found with others: {}. Bring those back on the \
+             timeline, or find what is missing again, in Gap.",
             titles.join("; ")
         )
     })

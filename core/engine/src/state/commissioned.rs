@@ -12,20 +12,26 @@ use crate::commission::{CommissionAround, CommissionWorkflow, Found, InUse};
 use crate::gap::GapWorkflow;
 use crate::grasp::view::AttemptView;
 use crate::ground::World;
+use crate::handeye::is_of_other_eyes;
 use crate::handeye::view::HandEyeSummary;
 
 impl Neighbors<CommissionWorkflow> for State {
     fn around(&self, world: World) -> CommissionAround {
         let Rooms { eyes, mount, touch, gap, handeye, grasp, .. } = &self.rooms;
         let (eyes, mount, touch) = (eyes.of(world), mount.of(world), touch.of(world));
+        let is_stale = mount.stale(eyes.in_use().map(|eyes| &**eyes), eyes.accepted().is_some()).is_some();
+        let model = gap.of(world).model();
+        let is_of_others = is_of_other_eyes(model, self.models.of(world).rig());
+        let hands = handeye.of(world).in_use(model).filter(|_| !is_of_others);
         CommissionAround {
             eyes: eyes.in_use().map(|calibration| of_eyes(calibration)),
-            mount: mount.in_use().map(|calibration| of_mount(calibration)),
+            // What was made with other eyes has to be made again.
+            mount: mount.in_use().filter(|_| !is_stale).map(|calibration| of_mount(calibration)),
             screen: touch.placement().map(of_screen),
             run: touch.run_standing(),
             found: of_gap(gap.of(world)),
             effects: InUse { names: gap.of(world).names_in_use(), told: gap.of(world).effects_told() },
-            hands: handeye.of(world).in_use(gap.of(world).model()).map(|seen| of_hands(seen)),
+            hands: hands.map(|seen| of_hands(seen)),
             held: grasp.of(world).held_last().map(of_grasp),
             views: eyes.pair_count() + mount.view_count(),
         }

@@ -24,10 +24,12 @@ use crate::live::LiveWorkflow;
 use crate::models::{ModelsAround, ModelsWorkflow};
 use crate::mount::{MountAround, MountWorkflow};
 use crate::recording::{RecordingAround, RecordingWorkflow};
+use crate::rig_models::other_eyes;
 use crate::robot::view::MotionState;
 use crate::scores::ScoresWorkflow;
 use crate::source::SourceWorkflow;
 use crate::source::view::SourceStatus;
+use crate::timeline::view::Subject;
 use crate::touch::refusal::Held;
 use crate::touch::{TouchAround, TouchWorkflow};
 use crate::truth::{Seen, TruthAround, TruthWorkflow};
@@ -164,18 +166,25 @@ impl State {
         moves || self.rooms.touch.of(self.arm_of).is_touching()
     }
 
-    /// Why places on the table are in doubt although all that they rest on was calibrated; a sentence.
-    fn places_in_doubt(&self, world: World) -> Option<String> {
-        let Rooms { eyes, mount, touch, .. } = &self.rooms;
+    /// Why what is in use and was calibrated is in doubt all the same, a sentence each, in the order in which it is made.
+    pub(super) fn in_doubt(&self, world: World) -> impl Iterator<Item = (Subject, String)> {
+        let Rooms { eyes, mount, touch, gap, .. } = &self.rooms;
         let eyes = eyes.of(world);
-        let of_mount = || mount.of(world).stale(eyes.in_use().map(|eyes| &**eyes), eyes.accepted().is_some());
-        let of_screen = || {
-            let doubts = touch.of(world).placement()?.doubts();
-            let doubt = sentence(&format!("the place of the screen is in doubt, for {}", doubts.first()?));
-            Some(format!("{doubt} Touching its corners again, in step 3, tells."))
-        };
-        let first = eyes.does_not_hold().or_else(of_mount).map(str::to_owned);
-        first.or_else(of_screen)
+        let of_mount = mount.of(world).stale(eyes.in_use().map(|eyes| &**eyes), eyes.accepted().is_some());
+        let of_screen = touch.of(world).placement().and_then(|placement| {
+            let doubt = format!("the place of the screen is in doubt, for {}", placement.doubts().first()?);
+            Some(sentence(&doubt))
+        });
+        let rig = self.models.of(world).rig();
+        let of_effects =
+            gap.of(world).model().and_then(|model| other_eyes(&model.effects_of_other_eyes(rig)));
+        let told = [
+            (Subject::Eyes, eyes.does_not_hold().map(str::to_owned)),
+            (Subject::Mount, of_mount.map(str::to_owned)),
+            (Subject::Screen, of_screen),
+            (Subject::Effects, of_effects),
+        ];
+        told.into_iter().filter_map(|(subject, why)| Some((subject, why?)))
     }
 
     /// How far places have moved since drift is watched, for whoever judged the eyes.
@@ -300,13 +309,15 @@ impl Neighbors<GraspWorkflow> for State {
         let usable = models.of(world).usable();
         let model = |method| usable.iter().find(|model| model.method() == method).cloned();
         let (detector, provider) = detect.chosen();
+        let looking = (self.rooms.handeye.of(world).is_looking())
+            .then_some("The eyes look at the hands: wait for the end, or cancel it, first.");
         GraspAround {
             described: self.rig.clone(),
             model: self.models.of(world).clone(),
             robot: self.robot.clone(),
             calibration: eyes.of(world).in_use().cloned(),
             eyes_on_min: self.eyes_on_s(world).map(|on_s| on_s / 60.0),
-            in_doubt: self.places_in_doubt(world),
+            in_doubt: self.in_doubt(world).next().map(|(_, why)| why),
             has_mount: mount.of(world).in_use().is_some(),
             has_screen: touch.of(world).screen().is_some(),
             corrections: Corrections {
@@ -320,7 +331,7 @@ impl Neighbors<GraspWorkflow> for State {
             source: source.view().clone(),
             found: detect.found().cloned(),
             in_experiment: trials.of(world).is_under_way(),
-            touches_first: touch.of(world).in_the_way(),
+            goes_first: touch.of(world).in_the_way().or(looking),
             touches_paused: touch.of(world).is_under_way(),
         }
     }

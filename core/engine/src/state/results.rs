@@ -140,12 +140,7 @@ impl Neighbors<TimelineWorkflow> for State {
             rig: self.rig.name.clone(),
             is_twin: world == World::Twin,
             in_use: in_use.into_iter().flatten().collect(),
-            against: eyes
-                .of(world)
-                .does_not_hold()
-                .map(|why| (Subject::Eyes, why.to_owned()))
-                .into_iter()
-                .collect(),
+            against: self.in_doubt(world).collect(),
             findings: gap.of(world).entries().iter().map(of_finding).collect(),
             measured: self.told_of(world),
         }

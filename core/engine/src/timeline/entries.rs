@@ -150,7 +150,13 @@ pub(super) fn in_use(entries: &[TimelineEntry], around: &TimelineAround) -> Vec<
             figure: standing.after,
             since: entry.map(|entry| entry.at),
             entry: entry.map(|entry| entry.number),
+            against: against(around, standing.subject),
         }
     });
     standings.collect()
+}
+
+fn against(around: &TimelineAround, subject: Subject) -> String {
+    let of_it = around.against.iter().filter(|(of, _)| *of == subject);
+    of_it.map(|(_, said)| said.as_str()).collect::<Vec<_>>().join(" ")
 }

@@ -6,7 +6,7 @@ use plumbline_report::setup::{self, Setup};
 
 use super::around::TimelineAround;
 use super::entries::in_use;
-use super::view::{EntryKind, Figure, Subject, TimelineEntry};
+use super::view::{EntryKind, Figure, TimelineEntry};
 
 /// Why the table cannot be made.
 #[derive(Debug, thiserror::Error)]
@@ -82,7 +82,7 @@ pub fn setup(entries: &[TimelineEntry], around: &TimelineAround, now: Timestamp)
                 title: now.title,
                 since: now.since.map(day).unwrap_or_default(),
                 error: now.figure.map(text).unwrap_or_default(),
-                against: against(around, now.subject),
+                against: now.against,
             })
             .collect(),
         steps: entries
@@ -102,11 +102,6 @@ pub fn setup(entries: &[TimelineEntry], around: &TimelineAround, now: Timestamp)
             .collect(),
         version: crate::ground::software(),
     }
-}
-
-fn against(around: &TimelineAround, subject: Subject) -> String {
-    let of_it = around.against.iter().filter(|(of, _)| *of == subject);
-    of_it.map(|(_, said)| said.as_str()).collect::<Vec<_>>().join(" ")
 }
 
 fn day(at: Timestamp) -> String {

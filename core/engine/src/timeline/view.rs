@@ -168,6 +168,8 @@ pub struct InUseNow {
     pub since: Option<Timestamp>,
     /// Number of the entry since which it is in use.
     pub entry: Option<u64>,
+    /// What speaks against it, whole sentences; empty where nothing does.
+    pub against: String,
 }
 
 impl TimelineView {

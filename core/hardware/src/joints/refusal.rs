@@ -183,7 +183,7 @@ pub enum Refusal {
     },
     /// It was silent.
     #[error(
-        "the servo of {name} did not answer for a while, so nothing is sent to it: look where it stands, then take hold of it (torque on)"
+        "the servo of {name} did not answer for a while, so nothing is sent to it: look where it stands, then take hold of it (Hold all joints, in Robot)"
     )]
     LetGo {
         /// The joint.
@@ -310,7 +310,7 @@ pub enum HoldReason {
     },
     /// A servo switched its own torque off.
     #[error(
-        "the servo of {name} (id {servo}) lost its torque: its power was cut, or it was overloaded or too hot; support the joint, then take hold of it (torque on)"
+        "the servo of {name} (id {servo}) lost its torque: its power was cut, or it was overloaded or too hot; support the joint, then take hold of it (Hold all joints, in Robot)"
     )]
     TorqueLost {
         /// The joint.

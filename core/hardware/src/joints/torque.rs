@@ -18,6 +18,11 @@ const MAX_TORQUE_BYTES: u16 = 5;
 /// Who may use less than this share of its torque is given what its memory allows when it is taken hold of.
 const FULL_FORCE: f64 = 0.95;
 
+/// Whether it may use less than all its torque.
+fn lacks_force(slot: &Slot) -> bool {
+    slot.reading.force.is_some_and(|share| share < FULL_FORCE)
+}
+
 impl Exchange {
     /// Switches torque. Switched on, a servo holds where it is; one that shut down after an overload
     /// is given its force again. Switched off, it is limp. `hot_c` is too hot to hold.
@@ -25,10 +30,16 @@ impl Exchange {
         self.bus.be_patient(true);
         let switched = if on { self.take_hold(i, hot_c) } else { self.let_go(i) };
         self.bus.be_patient(false);
-        match switched {
+        let switched = match switched {
             Err(BusError::Servo { .. }) => Ok(Some(unknown(&self.slots[i]))),
             other => other,
+        };
+        let slot = &mut self.slots[i];
+        if on && !slot.in_hand && matches!(switched, Ok(Some(_))) {
+            // It may hold by now, unheard: that it is nobody's to command is said until it is taken hold of.
+            (slot.let_go, slot.held_goal) = (true, None);
         }
+        switched
     }
 
     fn let_go(&mut self, i: usize) -> Result<Option<Refusal>, BusError> {
@@ -54,6 +65,9 @@ impl Exchange {
         let id = self.slots[i].unit.id();
         if let Some(refusal) = barred(&self.slots[i]) {
             return Ok(Some(refusal));
+        }
+        if self.slots[i].holds_well() && !lacks_force(&self.slots[i]) {
+            return Ok(None);
         }
         self.bus.await_owed(id)?;
         match self.bus.identify(id, true)? {
@@ -95,7 +109,7 @@ impl Exchange {
         };
         let Ok(goal) = slot.unit.goal_ticks(angle_rad) else { return Ok(false) };
         let bytes = slot.unit.goal_bytes(goal, self.speed_rad_s);
-        let lacks_force = slot.reading.force.is_some_and(|share| share < FULL_FORCE);
+        let lacks_force = lacks_force(slot);
         if !self.bus.write_once(id, address, &bytes)? || !self.bus.write_once(id, torque.address, &[1])? {
             return Ok(false);
         }

@@ -3,7 +3,9 @@
 use std::time::{Duration, Instant};
 
 use plumbline_hardware::dynamixel::{FaultKind, Item, open_port};
-use plumbline_hardware::joints::{ArmDriver, ArmOptions, HoldReason, Motion, MoveOutcome, Refusal, Unheard};
+use plumbline_hardware::joints::{
+    ArmDriver, ArmOptions, HoldReason, JointState, Motion, MoveOutcome, Refusal, Unheard,
+};
 
 use super::chain::{Fault, PtyChain};
 use super::world::{await_state, id_of, joint, nico, ready, run, turn};
@@ -36,6 +38,36 @@ fn every_kind_of_broken_answer_is_counted_and_repeated() {
         assert!(matches!(run(&driver, pan, 0.1, 0.5), MoveOutcome::Arrived { .. }), "{fault:?}");
         await_state(&driver, "all is well again", |s| s.joints.iter().all(|j| j.problem.is_none()));
     }
+}
+
+/// A servo that takes hold unheard is nobody's to command: that is said before a move is refused for it.
+#[test]
+fn who_could_not_be_taken_hold_of_is_said() {
+    let (rig, chain, driver) = ready();
+    let elbow = joint(&rig, "r_elbow_y");
+    let at = rig.servos.iter().position(|servo| servo.joint == elbow).expect("there");
+    driver.relax(&[]).expect("queued");
+    await_state(&driver, "limp", |s| s.joints.iter().all(|j| j.torque_on == Some(false)));
+    chain.fault(id_of(&rig, elbow), Fault::Silent, u32::MAX);
+    driver.engage(&[]).expect("queued");
+    let others = |s: &JointState| {
+        s.joints.iter().enumerate().filter(|(i, _)| *i != at).all(|(_, j)| j.torque_on == Some(true))
+    };
+    await_state(&driver, "the others hold", others);
+    chain.lock().servos.get_mut(&id_of(&rig, elbow)).expect("there").fault = None;
+    let state =
+        await_state(&driver, "it is heard", |s| s.joints[at].torque_on.is_some() && s.unknown.is_empty());
+    assert!(state.joints[at].let_go && state.joints[at].problem.is_some(), "{:?}", state.joints[at]);
+    let refused = run(&driver, elbow, 1.6, 0.3);
+    assert!(matches!(refused, MoveOutcome::Refused(Refusal::LetGo { .. })), "{refused:?}");
+    driver.engage(&[]).expect("queued");
+    await_state(&driver, "held", |s| s.joints.iter().all(|j| j.torque_on == Some(true) && !j.let_go));
+    // What holds already keeps its goal: under a load it stands below it, and would creep with every press.
+    let goals = || driver.state().joints.iter().map(|j| j.goal_rad).collect::<Vec<_>>();
+    let (before, told) = (goals(), chain.lock().told.len());
+    driver.engage(&[]).expect("queued");
+    std::thread::sleep(Duration::from_millis(500));
+    assert_eq!((goals(), chain.lock().told.len()), (before, told));
 }
 
 #[test]

@@ -49,13 +49,13 @@ impl PlanOptions {
         Self { patterns: vec![Pattern::Corners], repeats: 2, ..Self::plain(area, Purpose::PlaceScreen) }
     }
 
-    /// What commissioning touches for a purpose: 4 corners, 15 to learn from where they tell most, 6 anywhere
-    /// to check, 25 in all. What so few leave open of the arm, its hands held over the table tell the eyes.
+    /// What commissioning touches for a purpose: 4 corners and the middle, for of four alone nobody can say how good they
+    /// are, 15 to learn from where they tell most, 5 anywhere to check, 25 in all. What so few leave open of the arm, its hands held over the table tell the eyes.
     pub fn few(area: TouchArea, purpose: Purpose, seed: u64) -> Self {
         let patterns = match purpose {
-            Purpose::PlaceScreen => vec![Pattern::Corners],
+            Purpose::PlaceScreen => vec![Pattern::Corners, Pattern::Grid { columns: 1, rows: 1 }],
             Purpose::Train => vec![Pattern::Telling { places: 12, again: 3 }],
-            Purpose::Check => vec![Pattern::Random { count: 6 }],
+            Purpose::Check => vec![Pattern::Random { count: 5 }],
         };
         Self { patterns, seed, ..Self::plain(area, purpose) }
     }

@@ -50,7 +50,7 @@ fn the_usual_plans_have_the_usual_size() {
     assert_eq!(plan(&PlanOptions::place_screen(area())).touches.len(), 8);
     let few = |purpose| PlanOptions::few(area(), purpose, 7);
     let patterned = [Purpose::PlaceScreen, Purpose::Check].map(|purpose| plan(&few(purpose)).touches.len());
-    assert_eq!(patterned, [4, 6]);
+    assert_eq!(patterned, [5, 5]);
     assert_eq!(few(Purpose::Train).telling(), Some((12, 3)), "25 in all");
     let rich = plan(&PlanOptions::rich(area()));
     assert_eq!(rich.touches.len(), 17 * 2 * 3 * 2);

@@ -1,8 +1,9 @@
 //! Touches on the way: the screen is placed, touched to learn from, and touched to check.
 
 use plumbline_engine::View;
-use plumbline_engine::view::TouchPhase;
+use plumbline_engine::view::{LEAST_CHECKED, LEAST_TOUCHES, TouchPhase};
 use plumbline_model::touch_plan::Purpose;
+use plumbline_widgets::format;
 
 use super::super::robot;
 use super::super::touch::{done_of, held, measured, touch, wanted, what_moves};
@@ -56,6 +57,24 @@ fn is_moving(view: &View) -> bool {
     )
 }
 
+/// That a run for a purpose ended with too few touches to go on with, a sentence.
+fn too_few(view: &View, purpose: Purpose) -> Option<String> {
+    let touch = &view.touch;
+    let least = match purpose {
+        Purpose::PlaceScreen => return None,
+        Purpose::Train => LEAST_TOUCHES,
+        Purpose::Check => LEAST_CHECKED,
+    };
+    let is_of_it = touch.plan.as_ref().is_some_and(|plan| plan.options.purpose == purpose);
+    let count = touch.counts.touched;
+    (is_of_it && touch.phase == TouchPhase::Finished && count < least).then(|| {
+        format!(
+            "{} of the run before are too few: at least {least} are needed.",
+            format::count(count, "touch")
+        )
+    })
+}
+
 /// A run for a purpose: planned, begun, waited for.
 fn run(view: &View, purpose: Purpose, plan: Said) -> Said {
     let of_view = &view.touch;
@@ -76,6 +95,10 @@ fn run(view: &View, purpose: Purpose, plan: Said) -> Said {
         return trouble.into();
     }
     let planned = of_view.plan.as_ref().filter(|plan| plan.options.purpose == purpose);
+    let plan = match too_few(view, purpose) {
+        Some(why) => Said { sentence: format!("{why} {}", plan.sentence), ..plan }.warn(),
+        None => plan,
+    };
     match (&of_view.phase, planned) {
         (TouchPhase::Planned, Some(_)) if needs_window(view) => touch(view).into(),
         (TouchPhase::Planned, Some(planned)) if planned.reachable > 0 => {

@@ -7,6 +7,7 @@ mod results;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use plumbline_effects::RobotModel;
 use plumbline_grasp::{Hand, HandChoice, Method};
 use plumbline_model::StereoFrame;
 
@@ -54,6 +55,8 @@ pub struct GraspWorkflow {
     /// What is done when what is under way has ended.
     then: Option<HandStep>,
     pub(in crate::grasp) plan: Option<Arc<PlannedGrasp>>,
+    /// With which model of the robot.
+    pub(in crate::grasp) planned_with: Option<Arc<RobotModel>>,
     /// The attempt under way, or the last one.
     pub(in crate::grasp) progress: Option<Progress>,
     /// What the operator said of it.
@@ -89,6 +92,7 @@ impl GraspWorkflow {
             running: None,
             then: None,
             plan: None,
+            planned_with: None,
             progress: None,
             attempts: vec![],
             sights: Sights::default(),
@@ -106,6 +110,14 @@ impl GraspWorkflow {
         let planned = self.plan.as_ref().map(|plan| plan.hand);
         let last = || self.attempts.first().map(|attempt| attempt.hand);
         self.choice.asked().or(planned).or_else(last).unwrap_or_default()
+    }
+
+    /// What was planned with another calibration or model of the robot is not what would be sent now.
+    fn forget_old_plan(&mut self, around: &GraspAround) {
+        let is_old = |with: &Arc<RobotModel>| !Arc::ptr_eq(with, &around.model);
+        if self.running.is_none() && self.planned_with.as_ref().is_some_and(is_old) {
+            (self.plan, self.planned_with) = (None, None);
+        }
     }
 
     /// A pair has come from the eyes.
@@ -128,6 +140,7 @@ impl Workflow for GraspWorkflow {
     }
 
     fn view(&mut self, around: &GraspAround, _moment: &Moment) -> Arc<GraspView> {
+        self.forget_old_plan(around);
         Arc::new(self.shown(around))
     }
 
@@ -153,7 +166,7 @@ impl Workflow for GraspWorkflow {
                     context.notices.add(NoticeLevel::Warning, crate::ground::text::sentence(&problem));
                 }
             }
-            GraspResult::Planned(proposed) => self.planned(*proposed, context),
+            GraspResult::Planned(proposed) => self.planned(*proposed, around, context),
             GraspResult::Grasped(done) => self.grasped(*done, &summary, around, context),
             GraspResult::HandDone(_, done) => {
                 self.plan = None;

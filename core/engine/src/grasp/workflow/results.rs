@@ -11,14 +11,14 @@ use crate::grasp::work::{Context, GraspWork};
 use crate::ground::notice::NoticeLevel;
 
 impl GraspWorkflow {
-    pub(super) fn planned(&mut self, proposed: Proposed, context: &mut Context<'_>) {
+    pub(super) fn planned(&mut self, proposed: Proposed, around: &GraspAround, context: &mut Context<'_>) {
         if let Some(progress) = &self.progress {
             progress.change(|run| (run.seen, run.chosen) = (proposed.seen, proposed.chosen));
         }
         match proposed.plan {
             Ok(plan) => {
                 self.closed_at_m = None;
-                self.plan = Some(plan);
+                (self.plan, self.planned_with) = (Some(plan), Some(around.model.clone()));
             }
             Err(why) => {
                 self.plan = None;

@@ -210,6 +210,12 @@ impl Slot {
         self.in_hand && self.reading.torque_on == Some(true)
     }
 
+    /// Whether it holds, was heard in the last cycle and has nothing to say: there is nothing to take hold of.
+    pub fn holds_well(&self) -> bool {
+        let is_heard = self.identity == Identity::Right && self.missed == 0 && !self.verify && !self.silent;
+        is_heard && self.holds_torque() && !self.alarm && !self.hold_pending && self.force.is_none()
+    }
+
     /// Whether it has torque on and no force: it shut down after an overload.
     pub fn has_no_force(&self) -> bool {
         self.reading.force.is_some_and(|share| share < NO_FORCE)
