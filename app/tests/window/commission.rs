@@ -95,6 +95,20 @@ fn it_is_begun_by_one_button_and_moves_nothing() {
 }
 
 #[test]
+fn beginning_once_more_is_asked_first_with_what_goes() {
+    let fake = Fake::over(at(CommissionStep::Touches));
+    let mut window = fake.window(on(Screen::Commission));
+    click(&mut window, "Commission once more, from the beginning");
+    assert_eq!(fake.take_sent(), []);
+    assert!(says(&window, "All eight steps count as not done"));
+    click(&mut window, "Cancel");
+    assert_eq!(fake.take_sent(), []);
+    click(&mut window, "Commission once more, from the beginning");
+    click(&mut window, "Begin anew");
+    assert_eq!(fake.take_sent(), [Command::from(CommissionCommand::Start { anew: true })]);
+}
+
+#[test]
 fn before_anything_is_known_nothing_can_be_begun() {
     let fake = Fake::over(everything());
     let window = fake.window(on(Screen::Commission));

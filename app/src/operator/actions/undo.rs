@@ -298,6 +298,21 @@ mod tests {
     }
 
     #[test]
+    fn while_a_run_of_touches_needs_the_screen_nothing_older_is_taken_back_instead() {
+        let mut view = mounted(&["a", "b"]);
+        let timeline = Arc::make_mut(&mut view.timeline);
+        let mut screen = timeline.entries[1].clone();
+        (screen.subject, screen.number) = (Subject::Screen, 9);
+        let now = InUseNow { subject: Subject::Screen, entry: Some(9), ..timeline.in_use[0].clone() };
+        timeline.in_use = timeline.in_use.iter().cloned().chain([now]).collect();
+        timeline.entries = timeline.entries.iter().cloned().chain([screen]).collect();
+        let paused = plumbline_engine::view::TouchPhase::Paused { why: None };
+        Arc::make_mut(&mut view.touch).phase = paused;
+        let why = undo(&view, Screen::Commission).expect_err("not now");
+        assert!(why.contains("a run of touches is under way"), "{why}");
+    }
+
+    #[test]
     fn pairs_are_taken_back_where_they_are_collected_and_not_where_they_are_judged() {
         let eyes = Arc::new(EyesView { can_undo: true, ..EyesView::default() });
         let view = View { eyes, ..View::default() };

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use plumbline_effects::RigModel;
-use plumbline_effects::rig_model::{Addition, ModelEffect};
+use plumbline_effects::rig_model::{Addition, ModelEffect, numbers_of_eyes};
 use plumbline_grasp::Hand;
 use plumbline_handeye::hands::Miss;
 use plumbline_handeye::{Figures, Outcome, SENTENCE, Tie, Tied};
@@ -31,9 +31,14 @@ fn rig() -> Arc<Rig> {
 
 /// The zero of an elbow, as a look sizes it.
 fn model(rig: &Rig, before: &RigModel, value: f64) -> RigModel {
+    with(rig, before, ("joint-zero", "r_elbow_y"), value)
+}
+
+/// An effect of one number, as a look with the eyes of this robot sizes it.
+fn with(rig: &Rig, before: &RigModel, (id, site): (&str, &str), value: f64) -> RigModel {
     let effect = ModelEffect {
-        id: "joint-zero".to_owned(),
-        site: "r_elbow_y".to_owned(),
+        id: id.to_owned(),
+        site: site.to_owned(),
         title: String::new(),
         tip: Some("right_index_tip".to_owned()),
         shape: None,
@@ -48,7 +53,7 @@ fn model(rig: &Rig, before: &RigModel, value: f64) -> RigModel {
         effects: vec![effect],
         screens: vec![],
         externals: vec![],
-        eyes: vec![],
+        eyes: numbers_of_eyes(rig),
         together: vec![],
         replaces: true,
         at: jiff::Timestamp::UNIX_EPOCH,
@@ -208,4 +213,27 @@ fn a_model_learned_anew_makes_a_look_stale() {
     desk.around.added = Some(Arc::new(looked));
     let view = desk.view();
     assert!(view.in_use.is_some() && view.stale.is_none() && view.step == StepState::Done, "{view:?}");
+}
+
+#[test]
+fn a_look_with_eyes_that_are_not_in_use_any_more_is_stale_until_they_are_back() {
+    let (rig, folder) = (rig(), tempfile::tempdir().expect("a folder for the test"));
+    let nominal = Arc::new(RigModel::nominal(&rig));
+    let mut desk = Desk::new(&rig, &nominal, folder.path());
+    let looked = with(&rig, &nominal, ("eye-yaw", "right"), 0.004);
+    let kept = Box::new(Kept::of(&tied(looked.clone()), jiff::Timestamp::UNIX_EPOCH));
+    desk.with(|room, around, context| {
+        room.work_done(JobId(7), HandEyeResult::Restored(Some(kept)), around, context);
+    });
+    desk.around.added = Some(Arc::new(looked));
+    assert_eq!(desk.view().step, StepState::Done);
+    let mut mounted = (*rig).clone();
+    mounted.eyes.head_from_left.isometry.translation.vector.x += 0.002;
+    let own = std::mem::replace(
+        &mut desk.around.grasp.model,
+        Arc::new(plumbline_effects::RobotModel::nominal(Arc::new(mounted))),
+    );
+    assert!(desk.view().stale.as_ref().is_some_and(|why| why.contains("another calibration or mount")));
+    desk.around.grasp.model = own;
+    assert_eq!(desk.view().step, StepState::Done);
 }

@@ -183,3 +183,40 @@ impl Workflow for GraspWorkflow {
         self.ended(id, around, context);
     }
 }
+
+#[cfg(test)]
+mod old_plan_tests {
+    use std::time::{Duration, Instant};
+
+    use plumbline_model::robot::Rig;
+
+    use super::*;
+    use crate::ground::stage::Skipped;
+
+    #[test]
+    fn a_plan_goes_with_the_model_it_was_made_with() {
+        let rig = Arc::new(Rig::built_in("nico").expect("comes with the program"));
+        let mut around = GraspAround::bare(&rig);
+        let mut room = GraspWorkflow::new(Path::new("nowhere"));
+        let plan = PlannedGrasp {
+            method: Method::M5,
+            hand: Hand::Right,
+            model: "as described".to_owned(),
+            object: "Tomato".to_owned(),
+            at_m: [0.3, -0.1],
+            sigma_m: Some(0.03),
+            heading_rad: 0.0,
+            level: 1.0,
+            postures: Arc::from([]),
+            palm_way_m: Arc::from([]),
+            turns: Arc::from([]),
+            duration: Duration::from_secs(8),
+        };
+        (room.plan, room.planned_with) = (Some(Arc::new(plan)), Some(around.model.clone()));
+        let moment = Moment { now: Instant::now(), skipped: Skipped::default() };
+        assert!(room.view(&around, &moment).plan.is_some());
+        // The eyes are brought back, or an effect is added: the robot is known otherwise.
+        around.model = Arc::new(RobotModel::nominal(rig));
+        assert!(room.view(&around, &moment).plan.is_none());
+    }
+}

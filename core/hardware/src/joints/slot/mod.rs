@@ -61,6 +61,10 @@ pub(super) enum Force {
     Own,
 }
 
+/// So far a servo gives below a usual load. One that stands further from its goal pushes against something, which taking
+/// hold of it anew ends, rad.
+const GIVES_RAD: f64 = 0.035;
+
 /// A servo, what is known of it, and how it answers.
 #[derive(Clone, Debug)]
 pub(super) struct Slot {
@@ -210,10 +214,18 @@ impl Slot {
         self.in_hand && self.reading.torque_on == Some(true)
     }
 
-    /// Whether it holds, was heard in the last cycle and has nothing to say: there is nothing to take hold of.
+    /// Whether it holds where it was sent, was heard in the last cycle and has nothing to say: there is nothing to take
+    /// hold of.
     pub fn holds_well(&self) -> bool {
+        let off_rad = self.reading.angle_rad.zip(self.reading.goal_rad).map(|(at, goal)| (at - goal).abs());
+        let is_there = off_rad.is_some_and(|off_rad| off_rad < GIVES_RAD);
         let is_heard = self.identity == Identity::Right && self.missed == 0 && !self.verify && !self.silent;
-        is_heard && self.holds_torque() && !self.alarm && !self.hold_pending && self.force.is_none()
+        is_there
+            && is_heard
+            && self.holds_torque()
+            && !self.alarm
+            && !self.hold_pending
+            && self.force.is_none()
     }
 
     /// Whether it has torque on and no force: it shut down after an overload.
