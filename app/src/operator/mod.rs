@@ -21,8 +21,8 @@ pub use actions::{
 };
 pub use gamepad::{GamepadState, STOP_BUTTONS};
 pub use guidance::{
-    Course, Press, Verdict, capture_waits_for, course, done_of, is_of_choice, minutes, other_board, verdict,
-    wanted, wanted_board, what_moves,
+    Course, Press, Verdict, capture_waits_for, course, done_of, is_held_by_a_person, is_of_choice, minutes,
+    other_board, verdict, wanted, wanted_board, what_moves,
 };
 pub use outbox::{Outbox, Taken};
 pub use screens::{Pane, Screen};

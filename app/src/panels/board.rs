@@ -1,8 +1,7 @@
 //! Which board is used, counted in squares as people count, and how to solve.
 
 use egui::Ui;
-use plumbline_engine::EyesCommand;
-use plumbline_engine::view::EyesView;
+use plumbline_engine::{EyesCommand, View};
 use plumbline_model::ModelKind;
 use plumbline_widgets::NumberField;
 use plumbline_widgets::buttons::choice;
@@ -10,7 +9,7 @@ use plumbline_widgets::theme::{self, Role, space};
 
 use super::PanelContext;
 use super::board_draft::BoardDraft;
-use crate::operator::{Action, other_board};
+use crate::operator::{Action, is_held_by_a_person, other_board};
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     super::padded(ui, |ui| {
@@ -83,7 +82,7 @@ fn chosen(ui: &mut Ui, cx: &mut PanelContext<'_>, draft: BoardDraft, edited: Boa
     }
     // Kept while it cannot be used, so that typing goes on from what was typed.
     cx.state.board = edited.board().is_err().then_some(edited);
-    seen(ui, eyes);
+    seen(ui, cx.view);
     if let Some((columns, rows)) = other_board(eyes)
         && ui.button(format!("Use {columns}×{rows} squares")).clicked()
     {
@@ -106,7 +105,8 @@ fn number(ui: &mut Ui, label: &str, value: &mut u32) {
 }
 
 /// What a search for any board found, when that differs from what is looked for.
-fn seen(ui: &mut Ui, eyes: &EyesView) {
+fn seen(ui: &mut Ui, view: &View) {
+    let eyes = &view.eyes;
     let Some(seen) = &eyes.board_seen else { return };
     let as_chosen = seen.inner_corners.is_some() && other_board(eyes).is_none();
     // No board is in view most of the time, and nothing is wrong then.
@@ -116,7 +116,10 @@ fn seen(ui: &mut Ui, eyes: &EyesView) {
         Some(_) => Role::Warning,
     };
     ui.add_space(space::XS);
-    ui.label(egui::RichText::new(&seen.text).color(role.color(theme::tokens(ui))));
+    // How to hold it is of use to who holds it.
+    let is_held = seen.inner_corners.is_some() || is_held_by_a_person(view);
+    let text = if is_held { &seen.text } else { "No chessboard is seen." };
+    ui.label(egui::RichText::new(text).color(role.color(theme::tokens(ui))));
 }
 
 fn lens(ui: &mut Ui, cx: &mut PanelContext<'_>) {

@@ -119,9 +119,14 @@ fn mount(ui: &mut Ui, view: &View) {
         .filter(|(rig, posture)| posture.len() == rig.description.movable_count());
     match angles {
         Some((rig, posture)) => {
+            // Named by the side, as the planned poses are.
+            let side = |angle_rad: f64, [plus, minus]: [&str; 2]| {
+                let name = if angle_rad < 0.0 { minus } else { plus };
+                KeyValue::text(name, encoder(angle_rad.abs())).unit("°")
+            };
             let rows = [
-                KeyValue::text("Left", encoder(posture[rig.eyes.pan])).unit("°"),
-                KeyValue::text("Up", encoder(posture[rig.eyes.tilt])).unit("°"),
+                side(posture[rig.eyes.pan], ["Left", "Right"]),
+                side(posture[rig.eyes.tilt], ["Up", "Down"]),
             ];
             key_value_grid(ui, "head", &rows);
         }

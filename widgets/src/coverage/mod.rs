@@ -93,7 +93,7 @@ fn range_text([low, high]: [f64; 2], quantity: Quantity) -> String {
 }
 
 /// Room for the advice, the titles and the histograms beside the maps, pt.
-const BESIDE_MAPS: f32 = 190.0;
+const BESIDE_MAPS: f32 = 212.0;
 /// Narrower maps show nothing any more, pt.
 const LEAST_MAP: f32 = 72.0;
 

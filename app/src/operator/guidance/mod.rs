@@ -249,7 +249,7 @@ fn collect(view: &View) -> Guidance {
 }
 
 /// Whether a person holds the board before the eyes: not where it is shown by the twin, or was shown to a recording.
-fn is_held_by_a_person(view: &View) -> bool {
+pub fn is_held_by_a_person(view: &View) -> bool {
     view.source.replay.is_none() && view.source.spec != Some(SourceSpec::Twin)
 }
 

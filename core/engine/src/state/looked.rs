@@ -5,7 +5,7 @@ use std::path::Path;
 use super::State;
 use super::rooms::Neighbors;
 use crate::gap::GapWorkflow;
-use crate::grasp::GraspWorkflow;
+use crate::grasp::{GraspAround, GraspWorkflow};
 use crate::ground::World;
 use crate::handeye::{HandEyeAround, HandEyeWorkflow};
 
@@ -18,7 +18,11 @@ impl Neighbors<HandEyeWorkflow> for State {
         let one = searched.and_then(|folders| <[_; 1]>::try_from(folders).ok()).map(|[folder]| folder);
         let is_twin = world == World::Twin && self.twin.running;
         HandEyeAround {
-            grasp: <Self as Neighbors<GraspWorkflow>>::around(self, world),
+            // A look of its own is not in its own way.
+            grasp: GraspAround {
+                goes_first: touch.in_the_way(),
+                ..<Self as Neighbors<GraspWorkflow>>::around(self, world)
+            },
             added: gap.model().cloned(),
             is_changing: gap.is_changing(),
             touches: one.or_else(|| touch.trained_session().map(Path::to_owned)),
