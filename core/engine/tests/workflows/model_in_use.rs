@@ -133,7 +133,7 @@ fn effects_on_the_eyes_found_with_another_calibration_are_not_in_force_and_it_is
     assert_eq!(known.title(), "with 1 effect");
     assert_eq!(known.added().effects()[0].id, "joint-zero");
     let notices = desk.view().notices.clone();
-    let said = notices.iter().filter(|notice| notice.text.contains("Search in Gap again")).count();
+    let said = notices.iter().filter(|notice| notice.text.contains("found with others: ")).count();
     assert_eq!(said, 1, "{notices:?}");
     let accepted = rig_models::in_use(folder.path(), &rig).expect("it can be used");
     assert_eq!(accepted.added().effects(), known.added().effects());
