@@ -1,7 +1,8 @@
 //! What to do next with grasping: one button, named by what it does.
 
 use plumbline_engine::view::{
-    GateState, GraspOutcome, GraspPhase, GraspRun, GraspView, InHand, LampState, SinceHeld, TrialsPhase,
+    GateState, GraspOutcome, GraspPhase, GraspRun, GraspView, InHand, LampState, PLACES, SinceHeld,
+    TrialsPhase,
 };
 use plumbline_engine::{HandStep, View};
 use plumbline_widgets::format;
@@ -96,7 +97,7 @@ fn idle(view: &View) -> Guidance {
 
 /// Whether something speaks against where things are taken to lie.
 fn in_doubt(view: &View) -> bool {
-    view.grasp.gates.iter().any(|gate| gate.name == "Places" && gate.state == GateState::Doubtful)
+    view.grasp.gates.iter().any(|gate| gate.name == PLACES && gate.state == GateState::Doubtful)
 }
 
 /// What is in a hand has to leave it before anything else is grasped.

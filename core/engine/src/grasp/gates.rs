@@ -6,7 +6,7 @@ use plumbline_model::robot::JointIndex;
 use super::around::GraspAround;
 use super::method::lacks;
 use super::rest::rest;
-use super::view::{FULL_HAND, Gate, GateState, InHand};
+use super::view::{FULL_HAND, Gate, GateState, InHand, PLACES};
 use super::warmth::warmth;
 use crate::ground::text::sentence;
 use crate::robot::view::{Connection, RobotView};
@@ -186,14 +186,14 @@ fn places(around: &GraspAround) -> Gate {
     .filter_map(|(lacks, what)| lacks.then_some(what))
     .collect();
     if let Some(said) = &around.in_doubt {
-        return doubtful("Places", said.clone());
+        return doubtful(PLACES, said.clone());
     }
     if lacks.is_empty() {
-        return open("Places", "Lenses, mount and screen were calibrated.");
+        return open(PLACES, "Lenses, mount and screen were calibrated.");
     }
     let what = plumbline_model::listed(&lacks);
     let wide = if around.model.unmeasured().mount { WIDE } else { "" };
-    doubtful("Places", format!("Not calibrated, taken as described: {what}.{wide}"))
+    doubtful(PLACES, format!("Not calibrated, taken as described: {what}.{wide}"))
 }
 
 /// Said while nobody measured how the eyes sit in the head.

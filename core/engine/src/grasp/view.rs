@@ -99,6 +99,8 @@ pub struct Gate {
     pub text: String,
 }
 
+/// Name of the gate that says how well places on the table are known.
+pub const PLACES: &str = "Places";
 /// Name of the gate that is shut while a hand holds something.
 pub const FULL_HAND: &str = "Hand";
 /// Name of the gate of how warm the eyes are.

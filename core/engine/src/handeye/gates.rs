@@ -4,7 +4,7 @@ use plumbline_grasp::{Hand, HandChoice, Method};
 
 use super::around::HandEyeAround;
 use crate::grasp::gates::gates as gates_of_grasp;
-use crate::grasp::view::{Gate, GateState};
+use crate::grasp::view::{Gate, GateState, PLACES};
 
 /// All gates, in the order in which they are passed. Both arms move.
 pub fn gates(around: &HandEyeAround) -> Vec<Gate> {
@@ -19,7 +19,7 @@ pub fn gates(around: &HandEyeAround) -> Vec<Gate> {
             None => gates.push(gate),
         }
     }
-    gates.retain(|gate| !["Places", "Method"].contains(&gate.name));
+    gates.retain(|gate| ![PLACES, "Method"].contains(&gate.name));
     gates.push(calibrated(around));
     gates.push(touched(around));
     gates
@@ -42,14 +42,14 @@ fn calibrated(around: &HandEyeAround) -> Gate {
     let grasp = &around.grasp;
     let is_open = grasp.calibration.is_some() && grasp.has_mount && grasp.has_screen;
     if let Some(why) = grasp.in_doubt.as_ref().filter(|_| is_open) {
-        return Gate { name: "Places", state: GateState::Doubtful, text: why.clone() };
+        return Gate { name: PLACES, state: GateState::Doubtful, text: why.clone() };
     }
     let shut = match (grasp.calibration.is_some(), grasp.has_mount) {
         (false, _) => "The lenses are not calibrated: calibrate the eyes first.",
         (true, false) => "How the eyes sit in the head was not measured: calibrate the mount first.",
         (true, true) => "Where the screen lies was not measured: place the screen first, in Touch.",
     };
-    gate("Places", is_open, ["Lenses, mount and screen were calibrated.", shut])
+    gate(PLACES, is_open, ["Lenses, mount and screen were calibrated.", shut])
 }
 
 fn touched(around: &HandEyeAround) -> Gate {

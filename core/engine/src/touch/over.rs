@@ -22,20 +22,20 @@ const OF_THE_GLASS: Room = Room { above_m: 0.03, beside_m: 0.02 };
 
 /// An arm with a hand where this screen is, or nearly so; `None`: none has, as far as it is known.
 pub(super) fn arm_in<'a>(rig: &'a Rig, screen: &Touchscreen, robot: &RobotView) -> Option<&'a Arm> {
-    let is_in = |arm: &&Arm| {
-        let posture = robot.known(&arm.joints);
-        posture.is_some_and(|posture| !is_away(rig, arm, screen, posture, OF_THE_GLASS))
-    };
-    rig.arms.iter().find(is_in)
+    arm_within(rig, screen, robot, OF_THE_GLASS)
 }
 
 /// An arm with a hand on this screen or near it, in reach of it; `None`: none has, or it is not known.
 pub(super) fn arm_near<'a>(rig: &'a Rig, screen: &Touchscreen, robot: &RobotView) -> Option<&'a Arm> {
-    let is_near = |arm: &&Arm| {
+    arm_within(rig, screen, robot, TO_REACH)
+}
+
+fn arm_within<'a>(rig: &'a Rig, screen: &Touchscreen, robot: &RobotView, room: Room) -> Option<&'a Arm> {
+    let is_within = |arm: &&Arm| {
         let posture = robot.known(&arm.joints);
-        posture.is_some_and(|posture| !is_away(rig, arm, screen, posture, TO_REACH))
+        posture.is_some_and(|posture| !is_away(rig, arm, screen, posture, room))
     };
-    rig.arms.iter().find(is_near)
+    rig.arms.iter().find(is_within)
 }
 
 /// Whether every tip of an arm is beside the screen, or above it.
