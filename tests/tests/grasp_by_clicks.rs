@@ -56,7 +56,7 @@ fn a_tomato_is_planned_grasped_and_judged() {
     );
     assert_eq!(run.outcome, Some(GraspOutcome::Success), "{run:?}");
     until(&mut window, "the result", |window| {
-        window.query_all_by_label("The tomato is held.").next().is_some()
+        window.query_all_by_label("Fingers and eyes say: the tomato is held.").next().is_some()
     });
     // What the window says is not believed: ten seconds later it is looked where the tomato is.
     let (stood_m, now_s) = (stood_m.expect("it stands on the table"), view(&window).twin.time_s);
@@ -65,7 +65,7 @@ fn a_tomato_is_planned_grasped_and_judged() {
     println!("the tomato is {:.0} mm higher than it stood", 1e3 * (height_m - stood_m));
     assert!(height_m - stood_m > LIFTED_M, "it lies on the table: {height_m} m, it stood at {stood_m} m");
     assert!(
-        window.query_all_by_label("The tomato is held.").next().is_some(),
+        window.query_all_by_label("Fingers and eyes say: the tomato is held.").next().is_some(),
         "and the window says so still"
     );
     click(&mut window, "Held");

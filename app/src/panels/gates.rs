@@ -17,7 +17,7 @@ pub(crate) fn show(ui: &mut Ui, gates: &[Gate], view: &View, outbox: &mut Outbox
             GateState::Doubtful => ("note", Role::Weak),
             GateState::Shut => ("not ok", Role::Warning),
         };
-        ui.label(RichText::new(format!("{}: {sign}", gate.name)).color(role.color(tokens)));
+        ui.label(RichText::new(format!("{}: {sign}", gate.of.name())).color(role.color(tokens)));
         ui.label(theme::small(ui, gate.text.clone()));
         if let Some((label, screen)) = way_to(gate, view)
             && ui.button(label).clicked()

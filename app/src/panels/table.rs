@@ -17,7 +17,13 @@ pub fn uncertainty(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let proposed = eyes.proposal.as_ref().map(|proposal| proposal.uncertainty.as_ref());
     let in_use = eyes.in_use.as_ref().map(|in_use| in_use.uncertainty.as_ref());
     match proposed.or(in_use) {
-        Some(Some(map)) => draw(ui, "Uncertainty", map, "One standard deviation of a measured point", 2.0),
+        Some(Some(map)) => draw(
+            ui,
+            "Uncertainty",
+            map,
+            "One standard deviation of a measured point, with the head as it stood when this was made",
+            2.0,
+        ),
         Some(None) => message(
             ui,
             cx,
@@ -38,7 +44,13 @@ pub fn difference(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     match (&eyes.proposal, &eyes.in_use) {
         (Some(proposal), Some(_)) => match &proposal.difference {
             Some(map) => {
-                draw(ui, "Difference", map, "How far a point moves if the proposal is accepted", 2.0);
+                draw(
+                    ui,
+                    "Difference",
+                    map,
+                    "How far a point moves if the proposal is accepted, with the head as it stood when this was made",
+                    2.0,
+                );
             }
             None => message(
                 ui,

@@ -134,7 +134,10 @@ fn found(ui: &mut Ui, robot: &RobotView) {
             warn(ui, &late);
         }
         for (id, model) in &bus.unexpected {
-            warn(ui, &format!("Servo {id} ({model}) is not in the rig file; it is left alone."));
+            warn(
+                ui,
+                &format!("Servo {id} ({model}) is not in the description of this robot; it is left alone."),
+            );
         }
         for warning in &bus.warnings {
             warn(ui, warning);

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use egui::{Align, Button, Layout, Panel, Popup, Response, Ui};
 use jiff::Timestamp;
-use plumbline_engine::view::{RecordingState, SourceStatus, StepState, Subject};
+use plumbline_engine::view::{Gate, GateState, Need, RecordingState, SourceStatus, StepState, Subject};
 use plumbline_engine::{EyesCommand, View};
 use plumbline_model::duration;
 use plumbline_widgets::NumberField;
@@ -16,6 +16,7 @@ use plumbline_widgets::theme::{self, space};
 
 use super::lamps::{Then, TopLamp};
 use super::{PlumblineWindow, faults, lamps, robot_lamps, running_lamp, world_menu};
+use crate::operator::words::effect;
 use crate::operator::words::eyes::WARM_AFTER_MINUTES;
 use crate::operator::{Action, Outbox, RobotAction, Screen, shortcut_text};
 use crate::panels::source_age;
@@ -28,6 +29,8 @@ const TIGHT: [f32; 2] = [900.0, 1500.0];
 const LAMPS_HEIGHT: f32 = 30.0;
 /// A live picture older than this is worth a warning.
 const OLD: Duration = Duration::from_millis(500);
+/// A pair that is older than this is the last for now.
+const STOPPED: Duration = Duration::from_millis(1500);
 
 pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
     let width = ui.available_width();
@@ -75,7 +78,7 @@ fn lamps(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
     let mut all = faults::lamps(view);
     all.extend(running_lamp::lamp(view));
     all.extend(recording_lamp(view));
-    all.extend(eyes_lamps(view));
+    all.push(eyes_lamp(view));
     all.extend(robot_lamps::lamps(view));
     all.push(calibration_lamp(view));
     all.extend(model_lamp(view));
@@ -159,13 +162,15 @@ fn recording_details(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox)
     }
 }
 
-fn eyes_lamps(view: &View) -> Vec<TopLamp> {
+/// The lamp of the eyes.
+fn eyes_lamp(view: &View) -> TopLamp {
     let statistics = &view.live.statistics;
-    let rate = statistics.source.per_second.map(format::hertz);
+    let per_second = statistics.source.per_second;
+    let rate = per_second.map(format::hertz);
     let (value, health, reason): (String, Health, Option<String>) = match &view.source.status {
         SourceStatus::None => ("no source".to_owned(), Health::Off, None),
         SourceStatus::Opening => ("opening".to_owned(), Health::Working(0.5), None),
-        SourceStatus::Running => (rate.unwrap_or_else(|| "starting".to_owned()), Health::Good, None),
+        SourceStatus::Running => running(view, rate, per_second),
         SourceStatus::Paused => ("held still".to_owned(), Health::Good, None),
         SourceStatus::Ended => ("ended".to_owned(), Health::Good, None),
         SourceStatus::Lost { reason, attempts, .. } => {
@@ -174,14 +179,26 @@ fn eyes_lamps(view: &View) -> Vec<TopLamp> {
         }
     };
     let then = Then::Open(300.0, eyes_details);
-    let mut lamps = vec![TopLamp { name: "Eyes", value, health, reason, then }];
-    if let Some(age) = source_age(view).filter(|age| *age > OLD) {
-        let value =
-            if age < Duration::from_secs(10) { format::ms(age.as_secs_f64()) } else { format::age(age) };
-        let reason = Some("No new pair has come: look at the cameras and their cables.".to_owned());
-        lamps.push(TopLamp { name: "Age", value, health: Health::Warning, reason, then: Then::Nothing });
+    TopLamp { name: "Eyes", value, health, reason, then }
+}
+
+/// Eyes that give pairs, or should: how many, and whether the newest is old. Pairs that come that slowly are old whenever
+/// one looks, and not now and then.
+fn running(view: &View, rate: Option<String>, per_second: Option<f64>) -> (String, Health, Option<String>) {
+    let age = source_age(view);
+    let is_live = age.is_some();
+    let stopped = age.filter(|age| *age > STOPPED);
+    let is_slow = is_live && per_second.is_some_and(|rate| rate * OLD.as_secs_f64() < 1.0);
+    let cause = if view.twin.running {
+        "this computer is busy, or the twin is held still."
+    } else {
+        "look at the cameras and their cables, and at what else this computer does."
+    };
+    match (stopped, rate) {
+        (Some(age), _) => (format::age(age), Health::Warning, Some(format!("No new pair has come: {cause}"))),
+        (None, Some(rate)) if is_slow => (rate, Health::Warning, Some(format!("Few pairs come: {cause}"))),
+        (None, rate) => (rate.unwrap_or_else(|| "starting".to_owned()), Health::Good, None),
     }
-    lamps
 }
 
 fn eyes_details(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
@@ -214,7 +231,7 @@ fn calibration_lamp(view: &View) -> TopLamp {
     let name = "Calibration";
     let Some(in_use) = &view.eyes.in_use else {
         let (value, health, reason) = if view.live.nominal_lenses {
-            let reason = "Views, depth and measured points rest on the lens data of the rig file, not on these eyes: go to step 1, Eyes.";
+            let reason = "Views, depth and measured points rest on the lens data of the description, not on these eyes: go to step 1, Eyes.";
             ("nominal", Health::Warning, reason)
         } else {
             ("none", Health::Off, "Nothing can be measured without one: go to step 1, Eyes.")
@@ -225,8 +242,17 @@ fn calibration_lamp(view: &View) -> TopLamp {
     let made = in_use.calibration.evidence.as_ref().map_or(in_use.accepted, |evidence| evidence.created);
     let age = Timestamp::now().duration_since(made);
     let value = format::age(Duration::try_from(age).unwrap_or_default());
-    let (health, reason) = standing(&view.eyes.step);
+    let (health, reason) = match (standing(&view.eyes.step), other_warmth(view)) {
+        ((Health::Good, _), Some(why)) => (Health::Warning, Some(why)),
+        (stands, _) => stands,
+    };
     TopLamp { name, value, health, reason, then: Then::Go(Screen::Accept) }
+}
+
+/// Why the calibration does not hold for how warm the eyes are now; `None`: they are as warm, or nobody knows.
+fn other_warmth(view: &View) -> Option<String> {
+    let doubt = |gate: &&Gate| gate.of == Need::Warmth && gate.state == GateState::Doubtful;
+    view.grasp.gates.iter().find(doubt).map(|gate| gate.text.clone())
 }
 
 /// How a step that was done stands.
@@ -246,7 +272,10 @@ fn model_lamp(view: &View) -> Option<TopLamp> {
     let in_use = view.timeline.in_use.iter().find(|now| now.subject == Subject::Effects);
     let (health, reason) = match in_use.filter(|now| !now.against.is_empty()) {
         Some(now) => (Health::Warning, Some(now.against.clone())),
-        None => standing(&gap.step),
+        None => {
+            let (health, reason) = standing(&gap.step);
+            (health, reason.or_else(|| Some(effect::in_use(&gap.model))))
+        }
     };
     // The lamp has little room; its screen says all of it.
     let named = gap.model.effects.iter().filter(|effect| effect.is_named).count();

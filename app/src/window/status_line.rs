@@ -147,7 +147,10 @@ fn contents(
         next_button(view, &guidance, Look { led, resting }, ui, outbox);
     }
     // What moves, or would, is not hidden behind what failed before; and what the screen says itself is said once.
-    let would_move = guidance.next.as_ref().is_some_and(|next| next.action.begins_to_move());
+    let would_move = match course(view).filter(|_| led) {
+        Some(course) => course.begins_to_move(),
+        None => guidance.next.as_ref().is_some_and(|next| next.action.begins_to_move()),
+    };
     let failed =
         failed.filter(|(_, reason)| !moves(view) && !would_move && !guidance.sentence.contains(*reason));
     if let Some((job, _)) = failed

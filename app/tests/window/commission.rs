@@ -8,8 +8,8 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use plumbline::{PlumblineWindow, Screen, WindowSettings};
 use plumbline_engine::view::{
     AcceptedCalibration, CommissionDone, CommissionFigure, CommissionSpent, CommissionState, CommissionStep,
-    CommissionStepView, CommissionView, EyesView, Gate, GateState, MountView, SourceStatus, SourceView,
-    StepState, TouchPhase, WARMTH,
+    CommissionStepView, CommissionView, EyesView, Gate, GateState, MountView, Need, SourceStatus, SourceView,
+    StepState, TouchPhase,
 };
 use plumbline_engine::{
     Command, CommissionCommand, EyesCommand, GraspCommand, HandEyeCommand, MountCommand, SourceSpec,
@@ -309,7 +309,7 @@ fn the_tomato_is_laid_out_then_grasped_then_judged_by_a_person() {
     let window = Fake::over(lost.clone()).window(on(Screen::Grasp));
     assert!(shows(&window, "The tomato was held and has slipped out."), "in the pane");
     assert!(says(&window, "It was held and has slipped out. It is tried once more."), "in the strip");
-    assert!(!says(&window, "The tomato is held."));
+    assert!(!says(&window, "the tomato is held."));
     assert_eq!(press(lost).0, "Next: grasp the tomato");
 
     Arc::make_mut(&mut view.grasp).run = Some(Arc::new(run));
@@ -347,7 +347,7 @@ fn the_hands_are_looked_at_then_what_was_learned_is_accepted() {
     // What lacks is said, and where it is made.
     Arc::make_mut(&mut view.handeye).proposal = None;
     let text = "No touches to learn from were found in lab/sessions: touch the screen.".to_owned();
-    let gate = Gate { name: "Touches", state: GateState::Shut, text };
+    let gate = Gate { of: Need::Touches, state: GateState::Shut, text };
     Arc::make_mut(&mut view.handeye).gates = Arc::from([gate]);
     let window = Fake::over(view).window(on(Screen::HandEye));
     assert!(says(&window, "No touches to learn from were found in lab/sessions"));
@@ -357,7 +357,7 @@ fn the_hands_are_looked_at_then_what_was_learned_is_accepted() {
 fn hands_are_not_looked_at_with_cold_eyes_unwarned() {
     let mut view = at(CommissionStep::Hands);
     let text = "The eyes have been on for 2 min and were calibrated after 25 min: places are off.".to_owned();
-    let gate = Gate { name: WARMTH, state: GateState::Doubtful, text };
+    let gate = Gate { of: Need::Warmth, state: GateState::Doubtful, text };
     Arc::make_mut(&mut view.handeye).gates = Arc::from([gate]);
     let real = Fake::over(view.clone()).window(on(Screen::HandEye));
     assert!(says(&real, "calibrated after 25 min: places are off. The head turns"), "before anything moves");

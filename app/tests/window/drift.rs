@@ -56,7 +56,9 @@ pub fn course(minutes: f64) -> DriftCourse {
 }
 
 fn watching(course: Option<DriftCourse>) -> DriftView {
+    let now = std::time::Instant::now();
     DriftView {
+        looks_at: course.is_some().then_some([now, now]),
         step: StepState::Running,
         is_watching: true,
         course: course.map(Arc::new),

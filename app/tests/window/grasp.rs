@@ -9,8 +9,8 @@ use nalgebra::Point3;
 use plumbline::{PlumblineWindow, Screen, WindowSettings};
 use plumbline_engine::view::{
     BetweenSteps, Connection, DetectView, Gate, GateState, GraspHand, GraspMethod, GraspPhase, GraspRun,
-    GraspStep, GraspView, LampState, MotionState, ObjectView, RobotView, StepState, TouchPhase, TouchView,
-    ToyView, TwinView,
+    GraspStep, GraspView, LampState, MotionState, Need, ObjectView, RobotView, StepState, TouchPhase,
+    TouchView, ToyView, TwinView,
 };
 use plumbline_engine::{Command, Destination, GraspCommand, GraspTarget, RobotCommand, View};
 use plumbline_model::frame::Point;
@@ -87,7 +87,7 @@ fn who_can_hold_nothing_of_what_is_there_is_told_so_and_not_ready() {
 #[test]
 fn a_doubt_about_places_leads_to_where_it_is_mended() {
     let gate =
-        |state| Gate { name: "Places", state, text: "The place of the screen is in doubt.".to_owned() };
+        |state| Gate { of: Need::Places, state, text: "The place of the screen is in doubt.".to_owned() };
     let of = |state| {
         let mut view = with(GraspView { gates: Arc::from([gate(state)]), ..GraspView::default() });
         view.eyes = Arc::new(crate::commission::eyes_in_use());
@@ -129,7 +129,7 @@ fn toys_that_made_room_are_not_simply_missing() {
     assert_eq!(fake.take_sent(), [Command::from(RobotCommand::Preview(home))]);
     // A doubt does not hide that nothing lies there.
     let doubtful = |mut view: View| {
-        let gate = Gate { name: "Places", state: GateState::Doubtful, text: "Not calibrated.".to_owned() };
+        let gate = Gate { of: Need::Places, state: GateState::Doubtful, text: "Not calibrated.".to_owned() };
         let grasp = GraspView { gates: Arc::from([gate]), ..(*view.grasp).clone() };
         view.grasp = Arc::new(grasp);
         view

@@ -111,7 +111,7 @@ fn good_before(minutes: i64, eyes_on_min: Option<f64>, moved_m: Option<[f64; 3]>
     with_health(HealthView {
         state: HealthState::Judged(health.clone()),
         judged: Some(health),
-        when: Some(JudgedWhen { at, eyes_on_min, moved_m }),
+        when: Some(JudgedWhen { at, eyes_on_min, moved_m, colder: None, warmed_since: false }),
         colder_wait_min: None,
         does_not_hold: None,
     })
@@ -234,7 +234,13 @@ fn a_proposal_that_was_judged_before_places_moved_is_to_be_judged_again() {
     };
     let state = HealthState::Judged(health.clone());
     let at = jiff::Timestamp::now();
-    let when = Some(JudgedWhen { at, eyes_on_min: None, moved_m: Some([0.01, 0.02, 0.04]) });
+    let when = Some(JudgedWhen {
+        at,
+        eyes_on_min: None,
+        moved_m: Some([0.01, 0.02, 0.04]),
+        colder: None,
+        warmed_since: false,
+    });
     let view = with_health(HealthView {
         state,
         judged: Some(health),

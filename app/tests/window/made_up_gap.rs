@@ -150,6 +150,7 @@ pub fn added() -> GapView {
         undone: false,
         errors: Some(errors),
         in_pixels: false,
+        is_rms: false,
         sessions: finding.sessions.clone(),
     };
     let model = GapModelView {

@@ -285,7 +285,7 @@ fn connecting_says_that_nothing_moves_and_keeps_the_sheet_open() {
     assert!(says(&window, "Servos 5, 7 answer too late: the computer was too busy"), "load is named load");
     let cables = window.query_all_by_label_contains("look at its cable and its supply").count();
     assert_eq!(cables, 1, "nobody is sent to look at the cables of those that are late");
-    assert!(says(&window, "Servo 77 (MX-28) is not in the rig file"));
+    assert!(says(&window, "Servo 77 (MX-28) is not in the description of this robot"));
     assert!(says(&window, "latency timer"));
 }
 

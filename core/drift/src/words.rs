@@ -43,19 +43,23 @@ pub fn alarm(alarm: &Alarm) -> String {
 
 /// What a reference did by itself.
 pub fn own_motion(motion: &OwnMotion) -> String {
-    let at = minutes(motion.since_s);
-    let at = at.trim_end_matches(" min");
+    let minute = |at_s: f64| minutes(at_s).trim_end_matches(" min").to_owned();
+    let at = minute(motion.since_s);
+    let until = motion.until_s.map(minute);
     let OwnMotion { name, kind, by_m, .. } = motion;
-    match (by_m, kind) {
-        (None, _) => format!("{name}: gone or covered since minute {at}."),
-        (Some(by_m), ReferenceKind::Hand) => {
-            format!(
-                "{name}: sags by {} since minute {at}; its encoders stand still.",
-                millimeters(by_m.norm())
-            )
+    let by = by_m.map(|by_m| millimeters(by_m.norm()));
+    match (by, kind, until) {
+        (None, _, None) => format!("{name}: gone or covered since minute {at}."),
+        (None, _, Some(until)) => format!("{name}: was gone or covered from minute {at} to {until}."),
+        (Some(by), ReferenceKind::Hand, None) => {
+            format!("{name}: sags by {by} since minute {at}; its encoders stand still.")
         }
-        (Some(by_m), _) => {
-            format!("{name}: was moved by {} at minute {at}; the eyes stand still.", millimeters(by_m.norm()))
+        (Some(by), ReferenceKind::Hand, Some(until)) => {
+            format!("{name}: sagged by {by} from minute {at} to {until}; its encoders stood still.")
+        }
+        (Some(by), _, None) => format!("{name}: was moved by {by} at minute {at}; the eyes stand still."),
+        (Some(by), _, Some(until)) => {
+            format!("{name}: was moved by {by} at minute {at}, and is where it was since minute {until}.")
         }
     }
 }

@@ -3,6 +3,7 @@
 use plumbline_model::JobContext;
 
 use crate::ground::jobs::JobError;
+use crate::ground::notice::NoticeLevel;
 use crate::ground::{LongWork, Nothing};
 
 macro_rules! works {
@@ -90,6 +91,16 @@ works! {
     Labels(labels / LabelsWork);
     /// Part of judging detectors.
     Scores(scores / ScoresWork);
+}
+
+impl WorkResult {
+    /// What kind of news it is that this is done.
+    pub fn level(&self) -> NoticeLevel {
+        match self {
+            Self::Gap(result) => result.level(),
+            _ => NoticeLevel::Success,
+        }
+    }
 }
 
 impl From<Nothing> for Work {

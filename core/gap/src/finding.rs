@@ -41,6 +41,11 @@ impl Finding {
         self.verdict == Verdict::NoGap && self.comparison.is_noise_known()
     }
 
+    /// Whether the question was answered: with a name, or with an agreement within a noise that is known.
+    pub fn is_answered(&self) -> bool {
+        matches!(self.verdict, Verdict::Named | Verdict::Class) || self.is_all_clear()
+    }
+
     /// How much of the gap closes on rows that were not used; `None` too where nothing tells the noise: what the best
     /// model leaves was taken for it, and against that every model that is found closes all.
     pub fn told_closure(&self) -> Option<f64> {

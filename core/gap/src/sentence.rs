@@ -268,8 +268,17 @@ fn shrink_by_part(finding: &Finding) -> String {
 
 fn size(value: f64, unit: ShownUnit) -> String {
     match unit {
-        ShownUnit::Meter => format!("{} mm", fixed(value * 1e3, 1)),
+        ShownUnit::Meter => format!("{} mm", fixed(value * 1e3, decimals_of_mm(value * 1e3))),
         ShownUnit::Pixel => format!("{} px", fixed(value, 2)),
+    }
+}
+
+/// Decimals of a length as the window and the tables beside the sentence write it: one result is one number.
+fn decimals_of_mm(value: f64) -> usize {
+    match value.abs() {
+        small if small < 9.995 => 2,
+        middle if middle < 99.95 => 1,
+        _ => 0,
     }
 }
 

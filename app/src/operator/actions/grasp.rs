@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use plumbline_engine::view::{GateState, GraspPhase};
+use plumbline_engine::view::{GateState, GraspPhase, Need};
 use plumbline_engine::{Command, GraspCommand, HandStep, View};
 use serde::Serialize;
 
@@ -133,9 +133,8 @@ fn arm_trouble(view: &View) -> Refusal {
     if let Some(why) = led_by(view) {
         return Some(why.into());
     }
-    let of_arm = ["Robot", "STOP", "Arm"];
     let mut gates = view.grasp.gates.iter();
-    let shut = gates.find(|gate| gate.state == GateState::Shut && of_arm.contains(&gate.name));
+    let shut = gates.find(|gate| gate.state == GateState::Shut && Need::OF_A_HAND.contains(&gate.of));
     shut.map(|gate| said(&gate.text))
 }
 

@@ -49,6 +49,8 @@ type NoUndo = Cow<'static, str>;
 pub fn undo(view: &View, screen: Screen) -> Result<Undo, NoUndo> {
     match screen {
         Screen::Collect => of_pairs(view),
+        // Pairs that were dropped or restored since it was solved are what the hand was at.
+        Screen::Judge if view.eyes.can_undo && view.eyes.pairs_changed => of_pairs(view),
         Screen::Images => of_boxes(view),
         Screen::Judge | Screen::Accept => of_result(view, Subject::Eyes),
         Screen::Mount if view.mount.can_undo => {
@@ -154,7 +156,7 @@ fn title_of(entries: &[TimelineEntry], subject: Subject, id: Option<&String>) ->
     let title = entries.iter().rev().find(is_it).map(|entry| entry.title.clone());
     let as_described = match subject {
         Subject::Eyes => "no calibration",
-        Subject::Screen => "the place in the rig file",
+        Subject::Screen => "the place as it is described",
         _ => "the mount as it is described",
     };
     title.or_else(|| id.is_none().then(|| as_described.to_owned()))
@@ -318,6 +320,10 @@ mod tests {
         let view = View { eyes, ..View::default() };
         assert_eq!(undo(&view, Screen::Collect).map(|undo| undo.command), Ok(EyesCommand::Undo.into()));
         assert!(undo(&view, Screen::Judge).is_err());
+        // A pair that was dropped after it was solved comes back where it was dropped.
+        let eyes = Arc::new(EyesView { can_undo: true, pairs_changed: true, ..EyesView::default() });
+        let view = View { eyes, ..View::default() };
+        assert_eq!(undo(&view, Screen::Judge).map(|undo| undo.command), Ok(EyesCommand::Undo.into()));
         let why = undo(&View::default(), Screen::Collect).expect_err("nothing was collected");
         assert_eq!(why, "no pair was added or deleted");
     }

@@ -1,7 +1,7 @@
 //! What to do next with grasping: one button, named by what it does.
 
 use plumbline_engine::view::{
-    GateState, GraspOutcome, GraspPhase, GraspRun, GraspView, InHand, LampState, PLACES, SinceHeld,
+    GateState, GraspOutcome, GraspPhase, GraspRun, GraspView, InHand, JointView, LampState, Need, SinceHeld,
     TrialsPhase,
 };
 use plumbline_engine::{HandStep, View};
@@ -44,7 +44,7 @@ fn idle(view: &View) -> Guidance {
         return in_hand(held, grasp.run.as_deref());
     }
     if let Some(trouble) = grasp.trouble() {
-        let limp = trouble.contains("Hold all joints");
+        let limp = has_to_be_held(view);
         let guidance = say(trouble).warn();
         return if limp {
             guidance.then("Hold all joints", Action::Robot(RobotAction::TorqueOn))
@@ -95,9 +95,16 @@ fn idle(view: &View) -> Guidance {
     }
 }
 
+/// Whether nothing but joints that have to be taken hold of keeps the arm from grasping: every joint is known.
+pub(super) fn has_to_be_held(view: &View) -> bool {
+    let of_arm = view.grasp.shut().is_some_and(|gate| gate.of == Need::Arm);
+    let robot = &view.robot;
+    of_arm && robot.unknown.is_empty() && robot.joints.iter().any(JointView::has_to_be_held)
+}
+
 /// Whether something speaks against where things are taken to lie.
 fn in_doubt(view: &View) -> bool {
-    view.grasp.gates.iter().any(|gate| gate.name == PLACES && gate.state == GateState::Doubtful)
+    view.grasp.gates.iter().any(|gate| gate.of == Need::Places && gate.state == GateState::Doubtful)
 }
 
 /// What is in a hand has to leave it before anything else is grasped.

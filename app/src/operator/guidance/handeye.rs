@@ -1,17 +1,16 @@
 //! What to do next so that the arms are tied to the eyes.
 
 use plumbline_engine::View;
-use plumbline_engine::view::{Gate, HandEyeSummary, WARMTH};
+use plumbline_engine::view::{Gate, HandEyeSummary, Need};
 use plumbline_widgets::format;
 
 use super::sentence::{Guidance, say};
 use crate::operator::{Action, HandEyeAction, RobotAction, Screen};
 
 /// What moves, before it is pressed.
-const MOVES: &str = "Clear the table. The head turns, then each open hand is held over it at 12 places: 3 min, nothing is touched.";
+const MOVES: &str = "Clear the table. The head turns, then each open hand is held over it at 12 places: about 2 min, nothing is touched.";
 /// The same of a twin, which clears its table by itself.
-const MOVES_OF_THE_TWIN: &str =
-    "The head turns, then each open hand is held over the table at 12 places: 3 min, nothing is touched.";
+const MOVES_OF_THE_TWIN: &str = "The head turns, then each open hand is held over the table at 12 places: about 2 min, nothing is touched.";
 
 pub(super) fn handeye(view: &View) -> Guidance {
     let handeye = &view.handeye;
@@ -41,10 +40,10 @@ pub(super) fn handeye(view: &View) -> Guidance {
     }
     match (&handeye.stale, &handeye.in_use) {
         (Some(why), _) => say(format!("{why} {moves}")).warn().then("Look again", look),
-        (None, Some(_)) => {
-            say("The arms are tied to the eyes. Look again when eyes or an arm were taken apart.")
-                .then("Look again", look)
-        }
+        (None, Some(_)) => say(format!(
+            "The arms are tied to the eyes. Look again when eyes or an arm were taken apart. {moves}"
+        ))
+        .then("Look again", look),
         (None, None) => say(moves).then(HandEyeAction::Look.label(), look),
     }
 }
@@ -52,7 +51,7 @@ pub(super) fn handeye(view: &View) -> Guidance {
 /// Eyes of a twin that are colder than when they were calibrated get warm at a press; `None`: that is not what makes it
 /// doubtful.
 pub(super) fn to_be_warmed(view: &View, doubt: &Gate) -> Option<Guidance> {
-    let is_cold = doubt.name == WARMTH && view.eyes.health.colder_wait_min.is_some();
+    let is_cold = doubt.of == Need::Warmth && view.eyes.health.colder_wait_min.is_some();
     let warm = RobotAction::WarmUp;
     (is_cold && view.twin.running).then(|| {
         let sentence = format!("{} Warming moves nothing.", doubt.text);
@@ -72,13 +71,14 @@ fn doubtful(view: &View, doubt: &Gate, moves: &str) -> Guidance {
 
 /// What came of a look, in a sentence.
 pub fn said(proposal: &HandEyeSummary) -> Guidance {
-    match proposal.error_m() {
-        Some([before_m, after_m]) => {
+    match proposal.worse() {
+        Some((hand, [before_m, after_m])) => {
             let (before, after) = (format::mm(before_m), format::mm(after_m));
-            let which = if proposal.hands.len() > 1 { "The worse hand" } else { "The hand" };
+            let which = if proposal.hands.len() > 1 { ", the worse of both then," } else { "" };
             let guidance = say(format!(
-                "{which} is seen {before} beside its arm, {after} with what was learned (looks that were not used). \
-                 Accepting moves nothing."
+                "The {} hand{which} is seen {after} beside its arm with what was learned, {before} before (looks that \
+                 were not used). Accepting moves nothing.",
+                hand.name()
             ));
             if after_m > before_m { guidance.warn() } else { guidance }
         }
@@ -101,7 +101,7 @@ fn first_lacking(view: &View) -> Option<(&'static str, Screen)> {
     if view.mount.in_use.is_none() {
         return Some(("Go to Mount", Screen::Mount));
     }
-    let touches = view.handeye.gates.iter().find(|gate| gate.name == "Touches");
+    let touches = view.handeye.gates.iter().find(|gate| gate.of == Need::Touches);
     let lacks_touches = touches.is_some_and(|gate| gate.state == plumbline_engine::view::GateState::Shut);
     lacks_touches.then_some(("Go to Touch", Screen::Touch))
 }

@@ -84,14 +84,17 @@ fn stopped(view: &View, screen: Screen) -> Option<Guidance> {
         Screen::Live | Screen::Mount | Screen::Touch | Screen::HandEye | Screen::Grasp | Screen::Robot
     );
     let connected = view.robot.connection.is_connected();
-    let sinks = view.robot.motion == MotionState::Limp;
-    let said = match sinks {
+    (moves && connected && view.robot.stopped).then(|| say(stopped_words(view)).warn())
+}
+
+/// What STOP means just now: limp joints sink all the same.
+fn stopped_words(view: &View) -> &'static str {
+    match view.robot.motion == MotionState::Limp {
         true => {
             "Stopped, and the joints are limp: they sink where nobody holds them. Press Release STOP, at the top right, then hold all joints."
         }
         false => "Stopped: nothing moves until you press Release STOP, at the top right.",
-    };
-    (moves && connected && view.robot.stopped).then(|| say(said).warn())
+    }
 }
 
 /// What is wrong or not yet there with the source; `None` when it delivers.

@@ -20,18 +20,33 @@ pub(super) fn models(view: &View) -> Guidance {
         Standing::NotChosen => say(next_or(view, "Choose the session of touches to learn from."))
             .then("Go to Touch", Action::Go(Screen::Touch)),
         Standing::Unusable(why) => say(why).warn().then("Go to Touch", Action::Go(Screen::Touch)),
+        Standing::Recorded(count) if count < FEWEST_FOR_A_NETWORK && is_without_need(view) => {
+            to_grasping(view, &format!("{NO_NEED}; {}.", too_few(count)))
+        }
         Standing::Recorded(count) if count < FEWEST_FOR_A_NETWORK => {
             say(format!("{}.", too_few(count))).then("Go to Touch", Action::Go(Screen::Touch))
         }
         Standing::Recorded(count) => {
             let touches = format::count(count, "touch");
-            say(format!("{touches} are recorded. Next: train models on them. Nothing moves."))
+            let said = match is_without_need(view) {
+                true => format!("{NO_NEED}. They can be trained on {touches} all the same. Nothing moves."),
+                false => format!("{touches} are recorded. Next: train models on them. Nothing moves."),
+            };
+            say(said)
                 .then(format!("Train M1, M2 and M3 on {touches}"), Action::Models(ModelsAction::TrainAll))
         }
         Standing::Training => say("The models are being trained; nothing is used before you accept it."),
         Standing::Proposed(method, error_m) => proposed(view, method, error_m),
         Standing::InUse(method) => in_use(view, method),
     }
+}
+
+/// What the effects of the gap do, these models do in another way.
+const NO_NEED: &str = "With the effects in use no model is needed";
+
+/// Whether named effects correct the arm by now.
+fn is_without_need(view: &View) -> bool {
+    view.gap.step == StepState::Done && !view.gap.model.effects.is_empty()
 }
 
 fn proposed(view: &View, method: Method, error_m: Option<f64>) -> Guidance {

@@ -1,7 +1,7 @@
 //! From one step of the work to the next: what was accepted is behind, and the button leads on.
 
 use plumbline_engine::View;
-use plumbline_engine::view::{Gate, GateState, PLACES, StepState};
+use plumbline_engine::view::{Gate, GateState, Need, StepState};
 
 use super::sentence::{Guidance, say};
 use crate::operator::{Action, Screen};
@@ -47,7 +47,7 @@ pub(super) fn after_the_gap(view: &View, guidance: Guidance) -> Guidance {
 
 /// Where what a gate lacks, or has in doubt, is made: "Calibrate the eyes", and the screen.
 pub fn way_to(gate: &Gate, view: &View) -> Option<(&'static str, Screen)> {
-    if gate.state == GateState::Open || gate.name != PLACES {
+    if gate.state == GateState::Open || gate.of != Need::Places {
         return None;
     }
     if view.eyes.in_use.is_none() || view.eyes.health.does_not_hold.is_some() {

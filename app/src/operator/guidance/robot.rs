@@ -71,7 +71,17 @@ pub(super) fn let_go(robot: &RobotView) -> Option<Guidance> {
 /// The same where it answers again, so that it can be taken hold of: nothing goes on before that. One that is still
 /// silent stops only what needs it, and is said there.
 pub(super) fn to_take_hold_of(robot: &RobotView) -> Option<Guidance> {
-    let_go(robot).filter(|guidance| guidance.next.is_some())
+    limp(robot).or_else(|| let_go(robot).filter(|guidance| guidance.next.is_some()))
+}
+
+/// No joint holds: whatever moves has to wait until they do.
+pub(super) fn limp(robot: &RobotView) -> Option<Guidance> {
+    let is_limp = robot.connection.is_connected() && robot.motion == MotionState::Limp;
+    is_limp.then(|| {
+        say("The joints are limp: they can be turned by hand, and sink. They are held where they stand then.")
+            .warn()
+            .then("Hold all joints", Action::Robot(RobotAction::TorqueOn))
+    })
 }
 
 fn moving(robot: &RobotView) -> Option<Guidance> {
@@ -98,9 +108,10 @@ pub(super) fn robot(view: &View) -> Guidance {
     if let Some(guidance) = joint_trouble(robot) {
         return guidance;
     }
+    if let Some(guidance) = limp(robot) {
+        return guidance;
+    }
     match &robot.motion {
-        MotionState::Limp => say("The joints are limp: they can be turned by hand, and sink.")
-            .then("Hold all joints", Action::Robot(RobotAction::TorqueOn)),
         MotionState::Holding { why: Some(why) } => {
             say(format!("Holds where it stands: {} Show a move, or jog.", closed(why))).warn()
         }

@@ -21,7 +21,9 @@ pub(super) fn touch(view: &View) -> Guidance {
     let touch = &view.touch;
     match &touch.phase {
         TouchPhase::Running { number, doing } => running(touch, number.is_some(), doing),
-        TouchPhase::Waiting { what, prepare } => waiting(what, prepare.is_some()),
+        TouchPhase::Waiting { what, prepare } => {
+            robot::limp(&view.robot).unwrap_or_else(|| waiting(what, prepare.is_some()))
+        }
         _ => {
             if let Some(trouble) = robot::trouble(&view.robot)
                 .or_else(|| robot::to_take_hold_of(&view.robot))

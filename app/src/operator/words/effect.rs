@@ -1,6 +1,6 @@
 //! Effects in words: what they are called, how large and how sure they are.
 
-use plumbline_engine::view::AddedEffect;
+use plumbline_engine::view::{AddedEffect, GapModelView};
 use plumbline_model::parameter_words;
 use plumbline_widgets::format;
 
@@ -53,6 +53,16 @@ pub fn moved(effect: &AddedEffect) -> Option<String> {
     let what = if effect.is_of_eyes { "moves what the eyes see by" } else { "moves the fingertip by" };
     let small = if effect.is_small() { "small, " } else { "" };
     Some(format!("{small}{what} {moved_m}"))
+}
+
+/// What the model in use has, in a sentence.
+pub fn in_use(model: &GapModelView) -> String {
+    let (named, shares): (Vec<_>, Vec<_>) = model.effects.iter().partition(|effect| effect.is_named);
+    let mut told: Vec<String> = named.into_iter().map(|effect| effect.title.clone()).collect();
+    if !shares.is_empty() {
+        told.push(format!("small shares of {}", plumbline_model::counted(shares.len(), "effect")));
+    }
+    format!("In use: {}.", told.join("; "))
 }
 
 /// What a parameter chooses, in words: a joint, as those that were tried call it, or one of two things.

@@ -157,7 +157,7 @@ fn what_moves(between: BetweenSteps, run: &GraspRun) -> String {
 pub fn held_now(run: &GraspRun) -> String {
     let object = run.object.to_lowercase();
     match run.since {
-        SinceHeld::Held => format!("The {object} is held."),
+        SinceHeld::Held => format!("Fingers and eyes say: the {object} is held."),
         SinceHeld::Slipped(_) => format!("The {object} was held and has slipped out."),
         SinceHeld::LetGo => format!("The {object} was held."),
         SinceHeld::Unknown => {
@@ -173,7 +173,7 @@ pub fn result(attempt: &AttemptView) -> &'static str {
         (None, Some(GraspOutcome::Success)) if attempt.slipped_after.is_some() => "held, then lost",
         (Some(true), _) => "held, as you said",
         (Some(false), _) => "not held, as you said",
-        (None, Some(GraspOutcome::Success)) => "held",
+        (None, Some(GraspOutcome::Success)) => "held, by fingers and eyes",
         (None, Some(GraspOutcome::Failed { .. })) => "not held",
         (None, Some(GraspOutcome::Refused { .. })) => "refused",
         (None, None) => "broken off",

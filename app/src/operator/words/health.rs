@@ -8,6 +8,9 @@ use plumbline_widgets::format;
 pub fn judged(when: &JudgedWhen, now: Timestamp) -> String {
     let ago = format::age(when.age(now));
     match when.is_cold() {
+        _ if when.colder == Some(false) => {
+            format!("Judged {ago}, with eyes about as warm as when they were calibrated.")
+        }
         Some(true) => format!("Judged {ago}, with cold eyes."),
         Some(false) => format!("Judged {ago}, with warm eyes."),
         None => format!("Judged {ago}."),
@@ -21,6 +24,12 @@ pub fn outdated(when: &JudgedWhen, now: Timestamp) -> Option<String> {
             "Places have moved by {} since it was judged: it does not stand any more. Ask again.",
             format::mm(moved_m)
         ));
+    }
+    if when.warmed_since {
+        return Some(
+            "It was judged with eyes that were colder than when the calibration in use was made, and are as warm by now: it does not stand any more. Ask again."
+                .to_owned(),
+        );
     }
     when.is_outdated(now)
         .then(|| "It was judged a while ago, and nobody has looked since. Ask again.".to_owned())

@@ -5,6 +5,10 @@ use plumbline_widgets::format;
 
 use super::{more_doubts, sentence};
 
+/// What no view of a board tells, and where it is told.
+pub const NOT_IN_IT: &str = "Not in these ±: where the head looks straight ahead. No board tells the zero of the neck's turn, \
+     which is off by some degrees; the ± of places hold it until the hands are looked at, in step 6, Hand-eye.";
+
 /// Of a normal distribution 95 % lie within so many standard deviations.
 const NORMAL_95: f64 = 1.96;
 
@@ -24,7 +28,10 @@ pub fn verdict(summary: &MountSummary) -> (bool, String) {
     let error = format::px(summary.rms_px);
     let known = format::degrees(NORMAL_95 * sd_rad);
     let with = if held.is_empty() { "" } else { "; what is remarked below is in it" };
-    (true, format!("Good: {views} to {error}, and where the eyes look is known to {known} (95 %{with})."))
+    let said = format!(
+        "Good: {views} to {error}, and where the eyes look, as the neck counts its turn, is known to {known} (95 %{with})."
+    );
+    (true, said)
 }
 
 #[cfg(test)]
@@ -56,7 +63,7 @@ mod tests {
         assert_eq!(
             said,
             format!(
-                "Good: 12 views agree to {}, and where the eyes look is known to {} (95 %).",
+                "Good: 12 views agree to {}, and where the eyes look, as the neck counts its turn, is known to {} (95 %).",
                 format::px(0.21),
                 format::degrees(1.96e-3)
             )

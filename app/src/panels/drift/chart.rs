@@ -14,6 +14,9 @@ const RIGHT: f32 = 48.0;
 const LEAST_RANGE_MM: f64 = 6.0;
 /// More points than these are not told apart.
 const MOST_POINTS: usize = 600;
+/// A curve is broken where two looks lie farther apart than so many times the usual, and than so many minutes.
+const GAP_TIMES: f64 = 4.0;
+const GAP_MIN: f64 = 0.5;
 /// Names stand at least so far below each other.
 const NAME_HEIGHT: f32 = 12.0;
 
@@ -138,15 +141,25 @@ impl Chart<'_> {
         on: impl Fn([f64; 2]) -> egui::Pos2,
     ) {
         let step = line.points.len().div_ceil(MOST_POINTS).max(1);
-        let thinned = line.points.iter().rev().step_by(step).map(|point| on(*point));
-        let points: Vec<egui::Pos2> = thinned.collect();
         let color = line.role.color(tokens);
         let painter = painter.with_clip_rect(plot.expand(space::XS));
-        if let [only] = points.as_slice() {
-            painter.circle_filled(*only, 2.0, color);
+        for piece in pieces(&line.points) {
+            let points: Vec<egui::Pos2> = piece.iter().rev().step_by(step).map(|point| on(*point)).collect();
+            if let [only] = points.as_slice() {
+                painter.circle_filled(*only, 2.0, color);
+            }
+            painter.add(Shape::line(points, Stroke::new(1.5, color)));
         }
-        painter.add(Shape::line(points, Stroke::new(1.5, color)));
     }
+}
+
+/// Parts of a curve between which nobody looked: nothing is drawn there as if it had been seen.
+fn pieces(points: &[[f64; 2]]) -> Vec<&[[f64; 2]]> {
+    let mut gaps: Vec<f64> = points.windows(2).map(|two| two[1][0] - two[0][0]).collect();
+    gaps.sort_by(f64::total_cmp);
+    let usual = gaps.get(gaps.len() / 2).copied().unwrap_or(0.0);
+    let most = (GAP_TIMES * usual).max(GAP_MIN);
+    points.chunk_by(|one, two| two[0] - one[0] <= most).collect()
 }
 
 /// Ascending places moved as little as keeps them apart and inside.
@@ -166,6 +179,18 @@ fn apart(places: &[f32], [top, bottom]: [f32; 2]) -> Vec<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_curve_is_broken_where_nobody_looked() {
+        let at = |minutes: &[f64]| -> Vec<[f64; 2]> { minutes.iter().map(|at| [*at, 1.0]).collect() };
+        let lengths =
+            |points: &[[f64; 2]]| pieces(points).iter().map(|piece| piece.len()).collect::<Vec<_>>();
+        assert_eq!(lengths(&at(&[0.0, 0.1, 0.2, 2.0, 2.1])), [3, 2]);
+        // What is seldom looked at all the time is one curve, and so is a single look.
+        assert_eq!(lengths(&at(&[0.0, 1.0, 2.0, 5.0])), [4]);
+        assert_eq!(lengths(&at(&[3.0])), [1]);
+        assert!(pieces(&[]).is_empty());
+    }
 
     #[test]
     fn names_stay_apart_and_inside() {

@@ -1,11 +1,12 @@
 //! How far places wander over the minutes: near, in the middle, far, with the band.
 
 use egui::{RichText, Ui};
+use plumbline_engine::View;
 use plumbline_engine::view::{DriftCourse, DriftVerdict};
 use plumbline_widgets::theme::{self, Role, space};
 
 use super::chart::{Chart, Line};
-use super::{explain, nothing_yet};
+use super::{explain, nothing_yet, old};
 use crate::panels::{PanelContext, padded};
 
 /// Colors of the rows of the table, from near to far.
@@ -16,7 +17,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let drift = &cx.view.drift;
     let Some(course) = &drift.course else { return nothing_yet(ui, cx.view) };
     padded(ui, |ui| {
-        headline(ui, course, drift.is_watching);
+        headline(ui, course, cx.view);
         let times = cx.view.twin.warm_up_pace;
         if cx.view.twin.running && times > 1.0 {
             let text = format!("The twin's eyes warm up {times} times as fast as everything else.");
@@ -52,14 +53,16 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     });
 }
 
-fn headline(ui: &mut Ui, course: &DriftCourse, is_watching: bool) {
+fn headline(ui: &mut Ui, course: &DriftCourse, view: &View) {
     let tokens = theme::tokens(ui);
     let color = match course.verdict {
         DriftVerdict::Moved(_) | DriftVerdict::Warming { .. } => Role::Warning.color(tokens),
         _ => tokens.text_strong,
     };
     ui.label(RichText::new(&course.sentence).color(color));
-    if !is_watching {
+    if !view.drift.is_watching {
         ui.label(theme::small(ui, "Not watched any more: old."));
+    } else if let Some(old) = old(view) {
+        ui.label(RichText::new(old).color(Role::Warning.color(tokens)));
     }
 }

@@ -24,7 +24,14 @@ fn moved(ui: &mut Ui, view: &View) {
     };
     group_heading(ui, "Off at the far end");
     let far_m = course.points.last().map_or(0.0, |point| point.off_m[2]);
-    big_figure(ui, "now", &format::mm(far_m), Role::Measured);
+    let (when, role) = match super::age(view).filter(|age| view.drift.is_watching && *age <= super::OLD) {
+        Some(_) => ("now", Role::Measured),
+        None => ("at the last look", Role::Weak),
+    };
+    big_figure(ui, when, &format::mm(far_m), role);
+    if let Some(age) = super::age(view).filter(|age| *age > super::OLD) {
+        ui.label(theme::small(ui, format!("That was {}.", format::age(age))));
+    }
     if let Some(band_m) = course.band_m {
         ui.label(theme::small(ui, format!("Up to {} is scatter.", format::mm(band_m[2]))));
     }
@@ -54,7 +61,7 @@ fn moved(ui: &mut Ui, view: &View) {
         key_value_grid(ui, "drift references", &rows);
     }
     told(ui, "What moved", &course.alarms, Role::Warning);
-    told(ui, "Moved by itself", &course.own_motions, Role::Ink);
+    told(ui, "Moved by itself, or not seen", &course.own_motions, Role::Ink);
 }
 
 fn told(ui: &mut Ui, heading: &str, told: &[(f64, String)], role: Role) {

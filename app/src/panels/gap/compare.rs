@@ -79,7 +79,7 @@ fn sessions(ui: &mut Ui, cx: &mut PanelContext<'_>) {
 fn row(ui: &mut Ui, cx: &mut PanelContext<'_>, session: &GapSession) {
     let gap = &cx.view.gap;
     let mut chosen = gap.chosen.contains(&session.folder);
-    let when = session.started.map_or_else(|| session.name.clone(), clock);
+    let when = session.started.map_or_else(|| session.name.clone(), |at| format!("begun {}", clock(at)));
     let text = match &session.problem {
         None => format!("{when} · {}", measured(session)),
         Some(problem) => format!("{when} · {problem}"),
@@ -163,6 +163,7 @@ fn compared(ui: &mut Ui, shown: &ShownFinding) {
         ui.label(theme::small(ui, sentence));
     }
     ui.add_space(space::S);
+    let noise = if comparison.is_noise_known() { "noise" } else { "best model" };
     for kind in &comparison.kinds {
         theme::group_heading(ui, &format!("Where it shows: {}", words::kind(kind.what)));
         let rows: Vec<ShareRow> = kind
@@ -173,16 +174,23 @@ fn compared(ui: &mut Ui, shown: &ShownFinding) {
                 ShareRow {
                     name: of.name.clone(),
                     share: of.share,
-                    note: format!("{}, noise {}", quantity.text(of.rms), quantity.text(of.floor)),
+                    note: format!("{}, {noise} {}", quantity.text(of.rms), quantity.text(of.floor)),
                     role: Role::Difference,
                 }
             })
             .collect();
         share_rows(ui, &rows);
     }
+    let against = if comparison.is_noise_known() {
+        "the noise of one measurement"
+    } else {
+        "what the best model leaves, which stands for the noise"
+    };
     ui.label(theme::small(
         ui,
-        "Shares of the squared gap in units of the noise; beside them the rms of measured − predicted, the frame of the screen placed, and the noise of one measurement.",
+        format!(
+            "Shares of the squared gap in units of the noise; beside them the rms of measured − predicted, the frame of the screen placed, and {against}."
+        ),
     ));
     ui.add_space(space::S);
     for warning in &finding.warnings {

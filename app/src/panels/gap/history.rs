@@ -73,6 +73,9 @@ const SMALL_NAMED: &str = "Small effects stay in the model because the measureme
 /// Why effects without a name are there.
 const SMALL_SHARES: &str = "No name is due to these. Each is drawn to zero as far as robots usually have it; they stay because together they let the arm err less on touches held out.";
 
+/// The errors of a model that was fitted to touches with all that is usually wrong with arms.
+const RMS: &str = "rms, with height";
+
 /// An effect, its parameters on a line, and what they are worth.
 fn sizes(ui: &mut Ui, effect: &AddedEffect) {
     let mut sizes: Vec<String> = effect
@@ -101,16 +104,20 @@ fn steps(ui: &mut Ui, model: &GapModelView) {
         if rows.is_empty() {
             rows.push(IntervalRow {
                 name: "Nominal".to_owned(),
-                note: String::new(),
+                note: if step.is_rms { RMS.to_owned() } else { String::new() },
                 mean: Some(before),
                 interval: None,
                 role: Role::Difference,
             });
         }
-        floor = Some(noise);
+        floor = Some(noise).filter(|_| !step.is_rms);
         rows.push(IntervalRow {
             name: clock(step.at),
-            note: if step.undone { "taken back".to_owned() } else { String::new() },
+            note: match (step.undone, step.is_rms) {
+                (true, _) => "taken back".to_owned(),
+                (false, true) => RMS.to_owned(),
+                (false, false) => String::new(),
+            },
             mean: Some(after),
             interval: None,
             role: if step.undone { Role::Weak } else { Role::HeldOut },

@@ -29,7 +29,6 @@ pub fn show(ui: &mut Ui, view: &View, _state: &mut PanelState, _outbox: &mut Out
             KeyValue::text("rows", comparison.rows.to_string()),
             KeyValue::text("distinct poses", comparison.cells.to_string())
                 .help("Distinct commands, sides, heights and weights"),
-            KeyValue::text("seed", finding.seed.to_string()),
             KeyValue::text("searched for", format::fixed(finding.seconds, 1)).unit("s"),
         ],
     );
@@ -52,6 +51,6 @@ pub fn show(ui: &mut Ui, view: &View, _state: &mut PanelState, _outbox: &mut Out
         ui.label(theme::small(ui, session));
     }
     if !finding.version.is_empty() {
-        ui.label(theme::small(ui, format!("Found by {}.", finding.version)));
+        ui.label(theme::small(ui, format!("Found by Plumbline {}.", finding.version)));
     }
 }

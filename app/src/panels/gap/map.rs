@@ -58,7 +58,10 @@ fn legend(ui: &mut Ui, errors: Errors, drawn: &Drawn) {
         0 => String::new(),
         n => format!(" Gray dots: {}, not used.", format::count(n, "outlier")),
     };
-    ui.label(theme::small(ui, format!("Measured − predicted, {times}; each row held out.{outliers}")));
+    ui.label(theme::small(
+        ui,
+        format!("Measured − predicted in the plane of the table, {times}; each row held out.{outliers}"),
+    ));
     // Side by side where there is room.
     let beside = egui::Layout::left_to_right(egui::Align::Center);
     let below = egui::Layout::top_down(egui::Align::Min);

@@ -36,7 +36,7 @@ pub fn sizes(ui: &mut Ui, effect: &NamedEffect, finding: &Finding) {
         .collect();
     if effect.size_m > 0.0 {
         let sigmas = format::significant(effect.size_sigmas, 2);
-        let noise = theme::weak(ui, format!("rms, {sigmas} × the noise"));
+        let noise = theme::weak(ui, format!("rms, {sigmas} × {}", words::noise_name(finding)));
         rows.push([
             theme::weak(ui, "does"),
             RichText::new(words::error(&finding.shown, effect.size_m)),

@@ -20,7 +20,12 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     }
     padded(ui, |ui| {
         let held = attempts.iter().filter(|attempt| attempt.is_success()).count();
-        ui.label(theme::weak(ui, format!("{held} of {} held", attempts.len())));
+        let unsaid = attempts.iter().filter(|attempt| attempt.is_success() && attempt.told.is_none()).count();
+        let by_whom = match unsaid {
+            0 => String::new(),
+            n => format!(", {n} of them by fingers and eyes alone"),
+        };
+        ui.label(theme::weak(ui, format!("{held} of {} held{by_whom}", attempts.len())));
         ui.add_space(space::XS);
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 0.0;

@@ -1,7 +1,7 @@
 //! The pane of the work: what and how, gates, lamps, result, and every step by itself.
 
 use egui::{RichText, ScrollArea, Slider, Ui};
-use plumbline_engine::view::{FULL_HAND, GateState, GraspPhase};
+use plumbline_engine::view::{GateState, GraspPhase, Need};
 use plumbline_engine::{GraspCommand, HandStep, View};
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, Role, space};
@@ -121,8 +121,8 @@ fn gates(ui: &mut Ui, view: &View) {
             }
         };
     }
-    for gate in grasp.gates.iter().filter(|gate| gate.state == GateState::Shut && gate.name != FULL_HAND) {
-        let text = format!("{}, not ok: {}", gate.name, gate.text);
+    for gate in grasp.gates.iter().filter(|gate| gate.state == GateState::Shut && gate.of != Need::Hand) {
+        let text = format!("{}, not ok: {}", gate.of.name(), gate.text);
         ui.label(RichText::new(text).color(Role::Warning.color(tokens)));
     }
 }

@@ -43,8 +43,15 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     });
 }
 
-/// One line per part, while they are looked at.
+/// One line per part, while they are looked at, or were until it was broken off.
 fn under_way(ui: &mut Ui, view: &HandEyeView) {
+    if !view.is_looking {
+        warning(
+            ui,
+            "This look was broken off: nothing of it is kept. The next one begins at the first part.",
+        );
+        ui.add_space(space::XS);
+    }
     for part in view.parts.iter() {
         let (text, role) = match &part.state {
             PartState::Waits => ("waits".to_owned(), Role::Weak),
@@ -59,10 +66,12 @@ fn came_of_it(ui: &mut Ui, view: &HandEyeView, summary: &HandEyeSummary) {
     let what = if view.proposal.is_some() { "proposed" } else { "in use" };
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = space::L;
-        if let Some([before_m, after_m]) = summary.error_m() {
-            big_figure(ui, "worse hand beside its arm, before", &format::mm(before_m), Role::Ink);
+        if let Some((hand, [before_m, after_m])) = summary.worse() {
             let role = if after_m > before_m { Role::Warning } else { Role::Accepted };
-            big_figure(ui, &format!("after, {what}"), &format::mm(after_m), role);
+            let worse = if summary.hands.len() > 1 { ", the worse one" } else { "" };
+            let name = format!("{} hand{worse}, beside its arm, {what}", hand.name());
+            big_figure(ui, &name, &format::mm(after_m), role);
+            big_figure(ui, "the same before", &format::mm(before_m), Role::Ink);
         }
     });
     ui.label(theme::small(ui, format!("Looked at {}; on looks that were not used, rms.", clock(summary.at))));

@@ -38,6 +38,11 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
                 notes(ui, proposal);
             }
             table(ui, mount);
+            // A look at the hands tells it.
+            if view.handeye.in_use.is_none() {
+                ui.add_space(space::XS);
+                ui.label(theme::small(ui, words::mount::NOT_IN_IT));
+            }
             buttons(ui, cx);
         });
     });

@@ -46,7 +46,8 @@ pub fn show_inspector(ui: &mut Ui, _: &View) {
     group_heading(ui, "What this is for");
     let text = "Everything that was ever put in use stands on one line, whoever did it and in whichever step. Click \
         two entries to compare them. What was put in use last of a kind can be taken back here; nothing is deleted by \
-        that, so it can be used again.";
+        that. Eyes, mount and screen can then be used again here; models and effects where they were made, in Models \
+        and in Gap.";
     ui.label(theme::weak(ui, text));
     group_heading(ui, "Errors");
     let text = "Before and after of one entry are of the same data where the sentence at the entry says so: point at \

@@ -1,6 +1,6 @@
 //! The fields of a plan.
 
-use egui::{Grid, TextEdit, Ui, WidgetInfo};
+use egui::{Grid, TextEdit, Ui, WidgetInfo, vec2};
 use plumbline_model::touch_plan::{Finger, Pattern, PlanOptions, Purpose, Sides};
 use plumbline_widgets::NumberField;
 use plumbline_widgets::buttons::choice;
@@ -11,42 +11,60 @@ use crate::operator::{screen_of, usual_area};
 use crate::panels::PanelContext;
 use crate::panels::parts::warning;
 
+/// Below this width fields stand below what they are called, pt.
+const NARROW: f32 = 360.0;
+
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, options: &PlanOptions) {
     let mut edited = options.clone();
     ui.spacing_mut().interact_size.y = 22.0;
-    Grid::new("plan").num_columns(2).spacing([space::M, space::XS]).show(ui, |ui| {
-        row(ui, "For", |ui| purpose(ui, &mut edited.purpose));
-        row(ui, "With", |ui| finger(ui, cx, &mut edited));
-        area(ui, cx, &mut edited);
-        patterns(ui, &mut edited.patterns);
-        row(ui, "Each target", |ui| {
+    let narrow = ui.available_width() < NARROW;
+    let fields = |ui: &mut Ui| {
+        row(ui, narrow, "For", |ui| purpose(ui, &mut edited.purpose));
+        row(ui, narrow, "With", |ui| finger(ui, cx, &mut edited));
+        area(ui, narrow, cx, &mut edited);
+        patterns(ui, narrow, &mut edited.patterns);
+        row(ui, narrow, "Each target", |ui| {
             count(ui, "Times each target", &mut edited.repeats, 1..=20);
             ui.label(theme::weak(ui, if edited.repeats == 1 { "time" } else { "times" }));
         });
-        row(ui, "Coming from", |ui| {
+        row(ui, narrow, "Coming from", |ui| {
             let sides = [(Sides::Above, "Above"), (Sides::LeftAndRight, "Left and right")];
             choice(ui, "Coming from", &mut edited.sides, &sides);
         });
         let typed = &mut cx.state.touch.draft.typed;
-        row(ui, "Screen raised by", |ui| {
+        row(ui, narrow, "Screen raised by", |ui| {
             list(ui, &HEIGHTS, &mut typed[0], &mut edited.screen_heights_m);
         });
-        row(ui, "Weight in the hand", |ui| {
+        row(ui, narrow, "Weight in the hand", |ui| {
             list(ui, &WEIGHTS, &mut typed[1], &mut edited.payloads_kg);
         });
-    });
+    };
+    if narrow {
+        ui.vertical(fields);
+    } else {
+        Grid::new("plan").num_columns(2).spacing([space::M, space::XS]).show(ui, fields);
+    }
     cx.state.touch.draft.change(edited);
 }
 
-fn row(ui: &mut Ui, label: &str, contents: impl FnOnce(&mut Ui)) {
+/// What a field is called stands beside it, or above it where the tile is narrow.
+fn row(ui: &mut Ui, narrow: bool, label: &str, contents: impl FnOnce(&mut Ui)) {
     ui.label(theme::weak(ui, label));
-    cell(ui, contents);
+    cell(ui, narrow, contents);
     ui.end_row();
 }
 
 /// A grid puts what is as high as one line in the middle of its row, from where more lines would grow over the next
 /// row: this begins at the top.
-fn cell(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
+fn cell(ui: &mut Ui, narrow: bool, contents: impl FnOnce(&mut Ui)) {
+    if narrow {
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing = vec2(space::XS, space::XS);
+            contents(ui);
+        });
+        ui.add_space(space::XS);
+        return;
+    }
     ui.vertical(|ui| {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = space::XS;
@@ -71,17 +89,17 @@ fn finger(ui: &mut Ui, cx: &PanelContext<'_>, edited: &mut PlanOptions) {
 }
 
 /// In pixels; the drawing beside drags it.
-fn area(ui: &mut Ui, cx: &PanelContext<'_>, edited: &mut PlanOptions) {
+fn area(ui: &mut Ui, narrow: bool, cx: &PanelContext<'_>, edited: &mut PlanOptions) {
     let PlanOptions { area, finger, .. } = edited;
     let Some(screen) = screen_of(cx.view) else { return };
     let most = [screen.width_px, screen.height_px].map(|count| f64::from(count.saturating_sub(1)));
-    row(ui, "Columns", |ui| {
+    row(ui, narrow, "Columns", |ui| {
         pixel(ui, "First column", &mut area.u_px[0], most[0]);
         ui.label(theme::weak(ui, "to"));
         pixel(ui, "Last column", &mut area.u_px[1], most[0]);
         ui.label(theme::weak(ui, "px"));
     });
-    row(ui, "Rows", |ui| {
+    row(ui, narrow, "Rows", |ui| {
         pixel(ui, "First row", &mut area.v_px[0], most[1]);
         ui.label(theme::weak(ui, "to"));
         pixel(ui, "Last row", &mut area.v_px[1], most[1]);
@@ -113,7 +131,7 @@ fn count(ui: &mut Ui, label: &str, value: &mut usize, range: std::ops::RangeIncl
 }
 
 /// One row per pattern, switched on and off by its box.
-fn patterns(ui: &mut Ui, patterns: &mut Vec<Pattern>) {
+fn patterns(ui: &mut Ui, narrow: bool, patterns: &mut Vec<Pattern>) {
     let defaults = [
         Pattern::Corners,
         Pattern::Grid { columns: 7, rows: 4 },
@@ -127,7 +145,7 @@ fn patterns(ui: &mut Ui, patterns: &mut Vec<Pattern>) {
         let at = patterns.iter().position(same);
         let mut on = at.is_some();
         let changed = ui.checkbox(&mut on, name(&default)).changed();
-        cell(ui, |ui| {
+        cell(ui, narrow, |ui| {
             if let Some(pattern) = at.and_then(|at| patterns.get_mut(at)) {
                 fields(ui, pattern);
             }

@@ -26,7 +26,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         let possible = corners.refusal(view).is_none();
         let message = Message::new(
             "The nominal place is in use",
-            "From the rig file; a real screen lies some millimeters beside it. Touch its corners to measure it.",
+            "As it is described; a real screen lies some millimeters beside it. Touch its corners to measure it.",
         );
         let message = if possible { message.button("Plan to touch the corners") } else { message };
         if EmptyState::empty(message).show(ui) {

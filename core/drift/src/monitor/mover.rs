@@ -63,14 +63,30 @@ pub struct OwnMotion {
     pub kind: ReferenceKind,
     /// The first look that shows it, s.
     pub since_s: f64,
+    /// The first look that shows it where it was, s; `None`: it is elsewhere still.
+    pub until_s: Option<f64>,
     /// How far, robot frame, m; `None`: it is gone or covered.
     pub by_m: Option<Vector3<f64>>,
+}
+
+/// Notes what is seen again where it was, in all of the last looks.
+fn note_that_are_back(own: &mut [OwnMotion], lately: &[Sample]) {
+    for motion in own.iter_mut().filter(|motion| motion.until_s.is_none()) {
+        let is_back = |sample: &Sample| {
+            let mut all = sample.look.references.iter().filter(|one| one.name == motion.name);
+            all.next().is_some_and(|seen| !seen.is_elsewhere())
+        };
+        if lately.iter().all(is_back) {
+            motion.until_s = Some(lately[0].at_s);
+        }
+    }
 }
 
 /// Adds what moved by itself in the last looks, or takes up how far it is by now.
 pub(super) fn note_own_motions(own: &mut Vec<OwnMotion>, samples: &[Sample]) {
     let Some(last) = samples.len().checked_sub(CONFIRMED_BY) else { return };
     let lately = &samples[last..];
+    note_that_are_back(own, lately);
     for seen in &lately[CONFIRMED_BY - 1].look.references {
         let same = |sample: &Sample| {
             let all = sample.look.references.iter();
@@ -89,6 +105,7 @@ pub(super) fn note_own_motions(own: &mut Vec<OwnMotion>, samples: &[Sample]) {
                 name: seen.name.clone(),
                 kind: seen.kind,
                 since_s: lately[0].at_s,
+                until_s: None,
                 by_m: seen.own_m,
             }),
         }

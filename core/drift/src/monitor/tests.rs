@@ -173,6 +173,18 @@ fn a_thing_that_was_moved_and_a_hand_that_sags_are_no_fault_of_the_eyes() {
     assert_eq!(told, [("Tomato", at_s), ("Right hand", at_s)]);
     assert_eq!(words::own_motion(&own[0]), "Tomato: was moved by 20 mm at minute 62; the eyes stand still.");
     assert!(words::own_motion(&own[1]).contains("sags by 8.0 mm"), "{}", words::own_motion(&own[1]));
+    // What stands again where it was is not elsewhere.
+    for _ in 0..5 {
+        let references = vec![
+            seen("Tomato", ReferenceKind::Thing, 0.1),
+            seen("Right hand", ReferenceKind::Hand, -2.0),
+            seen("Touchscreen", ReferenceKind::Screen, 0.1),
+        ];
+        course.look(Vector3::zeros(), Vector3::zeros(), references);
+    }
+    let said: Vec<String> = course.monitor.own_motions().iter().map(words::own_motion).collect();
+    assert!(said[0].contains("and is where it was since minute"), "{said:?}");
+    assert!(said[1].contains("sags by 8.0 mm"), "{said:?}");
 }
 
 #[test]

@@ -89,6 +89,15 @@ impl RigModel {
     }
 
     /// Whether nothing is added: predictions are nominal.
+    /// Whether the errors of a step of the history are rms along the glass and in height, as of all that is usually wrong
+    /// with arms, fitted together; else they are means along the glass, as of a search.
+    pub fn is_rms(&self, step: usize) -> bool {
+        let Some(taken) = self.history.get(step) else { return false };
+        let after = self.history.get(step + 1).map_or(&self.contents, |next| &next.before);
+        !after.together.is_empty() && after.together != taken.before.together
+    }
+
+    /// Whether no effect is in force.
     pub fn is_nominal(&self) -> bool {
         self.contents.effects.is_empty()
     }

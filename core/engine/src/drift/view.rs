@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::Instant;
 
 pub use plumbline_drift::{GridCorrection, GridErrors, GridPlace, Judged};
 pub use plumbline_drift::{Mover as DriftMover, PlaceError, Row as TableRow, Verdict as DriftVerdict};
@@ -19,6 +20,8 @@ pub struct DriftView {
     pub is_watching: bool,
     /// Why it does not look just now, a sentence; `None`: it does, or does not watch.
     pub waits_because: Option<String>,
+    /// When it looked last and when it looks next, where it is neither waiting nor called off.
+    pub looks_at: Option<[Instant; 2]>,
     /// Why nothing came of the last look, a sentence.
     pub failed: Option<String>,
     /// What was seen since watching began; `None`: it never did.

@@ -45,6 +45,10 @@ pub(super) struct Watch {
     pub pending: Option<Arc<DriftInput>>,
     /// Whether anything has come of it yet.
     pub has_looked: bool,
+    /// When the newest pair was taken up of which something came.
+    pub looked: Option<Instant>,
+    /// When the pair that is looked at was taken up.
+    taken: Instant,
     pub told_alarms: usize,
     pub told_motions: usize,
     pub epipolar_px: Option<f64>,
@@ -64,6 +68,8 @@ impl Watch {
             pace: around.clock_pace,
             pending: None,
             has_looked: false,
+            looked: None,
+            taken: now.instant,
             told_alarms: 0,
             told_motions: 0,
             epipolar_px: None,
@@ -96,6 +102,12 @@ impl Watch {
         let at_s = at_s.max(last_s);
         self.pending = Some(Arc::new(DriftInput { watch: number, frame: frame.clone(), setup, at_s }));
         self.due = now + EVERY.div_f64(self.pace);
+        self.taken = now;
+    }
+
+    /// Something came of the pair that was taken up last.
+    pub fn has_seen(&mut self) {
+        self.looked = Some(self.taken);
     }
 
     /// A look has taken so long: the next one waits until it is a small share of the time, which passes as fast
@@ -112,7 +124,9 @@ impl Watch {
         for alarm in &self.monitor.alarms()[self.told_alarms..] {
             context.notices.add(NoticeLevel::Warning, words::alarm(alarm));
         }
-        for motion in &self.monitor.own_motions()[self.told_motions..] {
+        // What is only covered, by the robot's own arm most of all, is listed and not called out.
+        let own = &self.monitor.own_motions()[self.told_motions..];
+        for motion in own.iter().filter(|motion| motion.by_m.is_some()) {
             context.notices.add(NoticeLevel::Info, words::own_motion(motion));
         }
         self.told_alarms = self.monitor.alarms().len();

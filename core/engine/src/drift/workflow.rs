@@ -112,6 +112,7 @@ impl DriftWorkflow {
                 self.failed = None;
                 watch.epipolar_px = look.epipolar_px.or(watch.epipolar_px);
                 watch.monitor.add(Sample { at_s, look });
+                watch.has_seen();
                 self.course = watch.course().map(Arc::new);
                 watch.tell(context);
             }
@@ -212,6 +213,7 @@ impl Workflow for DriftWorkflow {
             step,
             is_watching,
             waits_because: waits.filter(|_| is_watching),
+            looks_at: self.watch.as_ref().and_then(|watch| Some([watch.looked?, watch.due])),
             failed: self.failed.clone().filter(|_| is_watching),
             course: self.course.clone(),
             is_busy: self.logging.is_some() || self.retelling.is_some(),

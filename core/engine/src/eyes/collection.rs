@@ -43,12 +43,23 @@ pub enum CollectError {
 /// What can be taken back.
 #[derive(Clone, Debug)]
 struct Content {
-    /// Different for every content there ever was.
+    /// Different for every content there ever was, and the same for one that came back.
     revision: u64,
     board: Chessboard,
     size_px: Option<[(u32, u32); 2]>,
     pairs: Vec<Arc<CollectedPair>>,
     dropped: BTreeSet<String>,
+}
+
+impl Content {
+    fn is_as(&self, other: &Self) -> bool {
+        let same_pairs = self.pairs.len() == other.pairs.len()
+            && self.pairs.iter().zip(&other.pairs).all(|(one, two)| Arc::ptr_eq(one, two));
+        same_pairs
+            && self.board == other.board
+            && self.size_px == other.size_px
+            && self.dropped == other.dropped
+    }
 }
 
 /// Pairs in the order of capture, which of them are dropped, and how it came about.
@@ -216,6 +227,7 @@ impl Collection {
         if !self.now.dropped.contains(name) {
             self.remember();
             self.now.dropped.insert(name.to_owned());
+            self.recognize();
         }
         Ok(())
     }
@@ -226,6 +238,7 @@ impl Collection {
         if self.now.dropped.contains(name) {
             self.remember();
             self.now.dropped.remove(name);
+            self.recognize();
         }
         Ok(())
     }
@@ -249,6 +262,13 @@ impl Collection {
         self.before.push(self.now.clone());
         self.revisions += 1;
         self.now.revision = self.revisions;
+    }
+
+    /// What is as it was before has the number that it had: what was solved from it is not stale.
+    fn recognize(&mut self) {
+        if let Some(same) = self.before.iter().rev().find(|before| before.is_as(&self.now)) {
+            self.now.revision = same.revision;
+        }
     }
 
     fn exists(&self, name: &str) -> Result<(), CollectError> {
@@ -322,6 +342,25 @@ mod tests {
             collection.undo().expect("a change");
         }
         assert_eq!(collection.undo(), Err(CollectError::NothingToUndo));
+    }
+
+    #[test]
+    fn what_came_back_is_what_was_solved() {
+        let mut collection = three();
+        let solved = collection.revision();
+        let name = names(&collection)[1].to_owned();
+        collection.drop_pair(&name).expect("it is there");
+        let without = collection.revision();
+        assert_ne!(without, solved);
+        collection.restore_pair(&name).expect("it is there");
+        assert_eq!(collection.revision(), solved);
+        collection.drop_pair(&name).expect("it is there");
+        assert_eq!(collection.revision(), without);
+        // Another one is another content.
+        collection.restore_pair(&name).expect("it is there");
+        let other = names(&collection)[0].to_owned();
+        collection.drop_pair(&other).expect("it is there");
+        assert!(![solved, without].contains(&collection.revision()));
     }
 
     #[test]

@@ -13,6 +13,7 @@ use super::health_judged::{Ask, Of};
 use super::view::EyesHealth;
 use super::work::{Context, at_most_busy};
 use super::workflow::{EyesAround, EyesWorkflow};
+use crate::ground::Time;
 use crate::ground::notice::NoticeLevel;
 
 /// Eyes that were just opened are left to settle for so long.
@@ -94,7 +95,7 @@ impl EyesWorkflow {
             return;
         }
         let Some(of) = self.to_be_judged(around) else { return };
-        let is_proposed = self.is_unseen(&of, around, context.time.day);
+        let is_proposed = self.is_unseen(&of, around, context.time);
         if !is_proposed && !self.is_due(now) {
             return;
         }
@@ -114,9 +115,11 @@ impl EyesWorkflow {
 
     /// Whether a proposal waits that nobody has looked at beside the calibration in use, or not since what was judged of
     /// it does not stand any more.
-    fn is_unseen(&self, of: &Of, around: &EyesAround, day: Timestamp) -> bool {
+    fn is_unseen(&self, of: &Of, around: &EyesAround, time: Time) -> bool {
         let judged = self.judged_of(of);
-        let stands = judged.is_some_and(|judged| !judged.when(around).is_outdated(day));
+        let stands = judged.is_some_and(|judged| {
+            !judged.when(around, self.eyes_on_min(around, time.instant)).is_outdated(time.day)
+        });
         let looked_at = self.health.by_itself.looked_at.as_ref();
         let is_seen =
             looked_at.is_some_and(|(seen, before)| seen.is(of) && *before == judged.map(|judged| judged.at));

@@ -12,6 +12,7 @@ use super::view::{Drifted, EyesHealth, JudgedWhen};
 use super::work::Pictures;
 use super::workflow::EyesAround;
 use crate::ground::jobs::JobId;
+use crate::ground::warming::Warmth;
 
 /// When it was asked, and whether nobody did.
 #[derive(Clone, Copy, Debug)]
@@ -107,10 +108,25 @@ pub struct ToldHealth {
 }
 
 impl Judged {
-    /// When that was, and what has come since.
-    pub fn when(&self, around: &EyesAround) -> JudgedWhen {
-        let moved_m = self.moved_m(around);
-        JudgedWhen { at: self.at, eyes_on_min: self.then.eyes_on_min, moved_m }
+    /// When that was, and what has come since; the eyes have been on for `on_min`, where anybody knows.
+    pub fn when(&self, around: &EyesAround, on_min: Option<f64>) -> JudgedWhen {
+        let colder = self.was_colder(self.then.eyes_on_min);
+        JudgedWhen {
+            at: self.at,
+            eyes_on_min: self.then.eyes_on_min,
+            moved_m: self.moved_m(around),
+            colder,
+            warmed_since: colder == Some(true) && self.was_colder(on_min) == Some(false),
+        }
+    }
+
+    /// Whether eyes that have been on for so many minutes are colder than when the calibration in use was made; `None`:
+    /// nobody knows.
+    fn was_colder(&self, on_min: Option<f64>) -> Option<bool> {
+        let evidence = self.of.in_use.evidence.as_ref();
+        let calibrated_min = evidence.and_then(|evidence| evidence.minutes_since_on);
+        let warmth = on_min.zip(calibrated_min).map(|(on_min, then_min)| Warmth::of(on_min, then_min));
+        warmth.map(|warmth| matches!(warmth, Warmth::Colder { .. }))
     }
 
     /// A pair has come.

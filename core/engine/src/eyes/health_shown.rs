@@ -2,13 +2,12 @@
 
 use std::time::Instant;
 
-use jiff::Timestamp;
-
 use super::clock::is_live;
 use super::health::PAIRS;
 use super::health_judged::{Ask, Of};
 use super::view::{HealthState, HealthView, ProposalHealth};
 use super::workflow::{EyesAround, EyesWorkflow};
+use crate::ground::Time;
 use crate::ground::warming::Warmth;
 
 impl EyesWorkflow {
@@ -30,7 +29,7 @@ impl EyesWorkflow {
             (None, None) => ended.map_or(HealthState::NotAsked, |(_, state)| state.clone()),
         };
         let colder_wait_min = self.to_be_warm_min(around, instant);
-        let when = judged.map(|judged| judged.when(around));
+        let when = judged.map(|judged| judged.when(around, self.eyes_on_min(around, instant)));
         let does_not_hold = self.does_not_hold().map(str::to_owned);
         let judged = judged.map(|judged| judged.health.clone());
         HealthView { state, judged, when, colder_wait_min, does_not_hold }
@@ -52,10 +51,10 @@ impl EyesWorkflow {
     }
 
     /// Why the proposal is not offered; `None`: it is, or nobody has judged it.
-    pub(super) fn not_offered(&self, around: &EyesAround, now: Timestamp) -> Option<&'static str> {
+    pub(super) fn not_offered(&self, around: &EyesAround, time: Time) -> Option<&'static str> {
         let judged = self.judged_of(&self.to_be_judged(around)?)?;
         let verdict = judged.health.proposed?.1;
-        let is_outdated = judged.when(around).is_outdated(now);
+        let is_outdated = judged.when(around, self.eyes_on_min(around, time.instant)).is_outdated(time.day);
         match verdict {
             ProposalHealth::Better | ProposalHealth::Untold | ProposalHealth::KnowsWhen => None,
             _ if is_outdated => Some(

@@ -46,12 +46,17 @@ pub struct JudgedWhen {
     pub eyes_on_min: Option<f64>,
     /// How far places have moved since near, in the middle and far, m, by watching drift; `None`: that says nothing.
     pub moved_m: Option<[f64; 3]>,
+    /// Whether the eyes were colder then than when the calibration in use was made; `None`: nobody knows how warm they
+    /// were one of both times.
+    pub colder: Option<bool>,
+    /// Whether they are as warm by now: what was seen then is not what they see.
+    pub warmed_since: bool,
 }
 
 impl JudgedWhen {
     /// Whether the eyes had been on for too short a time to be warm; `None`: nobody knows.
     pub fn is_cold(&self) -> Option<bool> {
-        Some(is_cold(self.eyes_on_min?))
+        self.colder.or_else(|| Some(is_cold(self.eyes_on_min?)))
     }
 
     /// How far places have moved since where that is most, where it is farther than a grasp bears, m: then nothing that
@@ -68,7 +73,7 @@ impl JudgedWhen {
 
     /// Whether nothing that was judged stands any more, neither of the calibration in use nor of a proposal.
     pub fn is_outdated(&self, now: Timestamp) -> bool {
-        self.moved_too_far_m().is_some() || self.age(now) > OLD
+        self.warmed_since || self.moved_too_far_m().is_some() || self.age(now) > OLD
     }
 }
 

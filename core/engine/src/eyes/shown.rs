@@ -36,6 +36,7 @@ impl EyesWorkflow {
             dropped: Arc::new(self.collection.dropped().clone()),
             not_collected: self.not_collected.clone(),
             can_undo: self.collection.can_undo(),
+            pairs_changed: self.pairs_changed(),
             coverage: self.derived.coverage.clone(),
             ghost: self.derived.ghost.clone(),
             solving: self.busy.solving,

@@ -58,6 +58,8 @@ pub struct EyesView {
     pub not_collected: Arc<[(String, String)]>,
     /// Whether there is a change to take back.
     pub can_undo: bool,
+    /// Whether pairs came, went, were dropped or restored since the proposal was solved.
+    pub pairs_changed: bool,
     /// Where the board has been.
     pub coverage: Arc<Coverage>,
     /// Where to hold the board next.
@@ -318,6 +320,7 @@ impl Default for EyesView {
             dropped: Arc::default(),
             not_collected: Arc::from([]),
             can_undo: false,
+            pairs_changed: false,
             coverage: Arc::default(),
             ghost: None,
             solving: None,

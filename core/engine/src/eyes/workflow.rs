@@ -259,6 +259,13 @@ impl EyesWorkflow {
         *revision == self.collection.revision() && *options == self.options && *id == in_use.id
     }
 
+    /// Whether the shown proposal was solved from other pairs than those that are collected now.
+    pub(super) fn pairs_changed(&self) -> bool {
+        let is_solved = self.proposal.as_ref().is_some_and(|proposal| proposal.origin == Origin::Solved);
+        let revision = self.solved_from.as_ref().map(|(revision, _)| *revision);
+        is_solved && revision.is_some_and(|revision| revision != self.collection.revision())
+    }
+
     /// Says of a solved proposal that something changed since.
     fn mark_stale(&mut self) {
         let Some(proposal) = &self.proposal else { return };
@@ -266,7 +273,7 @@ impl EyesWorkflow {
             return;
         }
         let stale = match &self.solved_from {
-            Some((revision, _)) if *revision != self.collection.revision() => {
+            Some(_) if self.pairs_changed() => {
                 Some("Pairs were added, dropped or restored since it was solved. Solve again.".to_owned())
             }
             Some((_, options)) if *options != self.options => {
@@ -360,7 +367,7 @@ impl Workflow for EyesWorkflow {
             EyesCommand::RestorePair { pair } => self.edit(context, |pairs| pairs.restore_pair(&pair)),
             EyesCommand::Solve => self.solve(around, context),
             EyesCommand::JudgeHealth => self.judge_health(around, context),
-            EyesCommand::Accept => match self.not_offered(around, context.time.day) {
+            EyesCommand::Accept => match self.not_offered(around, context.time) {
                 Some(why) => context.refuse(why),
                 None => self.accept(context),
             },

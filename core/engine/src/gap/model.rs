@@ -51,7 +51,7 @@ pub fn view(model: &RigModel, moved_m: &[Option<f64>]) -> GapModelView {
     GapModelView {
         name: name(model),
         effects: effects.collect(),
-        history: model.history.iter().map(|taken| step(model, taken)).collect(),
+        history: model.history.iter().enumerate().map(|(i, taken)| step(model, i, taken)).collect(),
         can_undo: model.can_undo(),
     }
 }
@@ -93,7 +93,7 @@ fn plain(name: &str) -> String {
     }
 }
 
-fn step(model: &RigModel, step: &Step) -> ModelStep {
+fn step(model: &RigModel, place: usize, step: &Step) -> ModelStep {
     let what = match step.kind {
         StepKind::Added => "added",
         StepKind::Removed => "taken out",
@@ -104,6 +104,7 @@ fn step(model: &RigModel, step: &Step) -> ModelStep {
         title: format!("{} {what}", titles(model, step)),
         undone: step.undone || step.kind == StepKind::Undone,
         errors: step.gap.as_ref().map(|gap| [gap.before, gap.after, gap.floor]),
+        is_rms: model.is_rms(place),
         in_pixels: step.gap.as_ref().is_some_and(|gap| gap.unit == "px"),
         sessions: step.sessions.clone(),
     }

@@ -144,6 +144,8 @@ pub struct ModelStep {
     pub errors: Option<[f64; 3]>,
     /// Whether these are in pixels.
     pub in_pixels: bool,
+    /// Whether these are rms along the glass and in height, with no floor that is known; else means along the glass.
+    pub is_rms: bool,
     /// Names of the sessions that it rests on.
     pub sessions: Vec<String>,
 }

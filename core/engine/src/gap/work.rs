@@ -16,6 +16,7 @@ use super::view::GapSession;
 use super::{at_tip, model};
 use crate::ground::LongWork;
 use crate::ground::jobs::JobError;
+use crate::ground::notice::NoticeLevel;
 use crate::ground::sessions::title_of;
 use crate::ground::text::sentence;
 use crate::{ground, rig_models};
@@ -332,6 +333,15 @@ fn changed(watched: &[KeptSession]) -> Vec<PathBuf> {
 }
 
 impl GapResult {
+    /// Whether it is good news: a search that gives no name is none.
+    pub fn level(&self) -> NoticeLevel {
+        match self {
+            Self::Found(named) if named.kept.finding.is_answered() => NoticeLevel::Success,
+            Self::Found(_) => NoticeLevel::Info,
+            _ => NoticeLevel::Success,
+        }
+    }
+
     /// The result in a sentence.
     pub fn summary(&self) -> String {
         match self {

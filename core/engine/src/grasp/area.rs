@@ -4,10 +4,7 @@ use plumbline_grasp::Method;
 use plumbline_model::Point;
 
 use super::around::GraspAround;
-use super::view::{Gate, GateState};
-
-/// Name of the gate.
-const NAME: &str = "Area";
+use super::view::{Gate, GateState, Need};
 
 /// A word where a thing stands beside the touches from which the network of M2 or M3 was trained, robot
 /// frame, m; nothing elsewhere, and where nobody knows from which. It warns and does not refuse: the published
@@ -26,7 +23,7 @@ pub(super) fn area(around: &GraspAround, method: Method, [x_m, y_m]: [f64; 2]) -
     let name = method.name().to_uppercase();
     if border.contains(pixel) {
         let text = format!("{name} was trained around there.");
-        return Some(Gate { name: NAME, state: GateState::Open, text });
+        return Some(Gate { of: Need::Area, state: GateState::Open, text });
     }
     let nearest = screen.point_at(border.nearest_inside(pixel)).coords;
     let beside_mm = (nearest.x - x_m).hypot(nearest.y - y_m) * 1e3;
@@ -34,7 +31,7 @@ pub(super) fn area(around: &GraspAround, method: Method, [x_m, y_m]: [f64; 2]) -
         "The thing stands {beside_mm:.0} mm beside the touches from which {name} was trained: its correction there is \
          that of the border, and may be off. Put it nearer, or choose M5."
     );
-    Some(Gate { name: NAME, state: GateState::Doubtful, text })
+    Some(Gate { of: Need::Area, state: GateState::Doubtful, text })
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use plumbline_model::robot::JointIndex;
 use super::around::GraspAround;
 use super::method::lacks;
 use super::rest::rest;
-use super::view::{FULL_HAND, Gate, GateState, InHand, PLACES};
+use super::view::{Gate, GateState, InHand, Need};
 use super::warmth::warmth;
 use crate::ground::text::sentence;
 use crate::robot::view::{Connection, RobotView};
@@ -31,7 +31,7 @@ pub fn gates(around: &GraspAround, choice: HandChoice, method: Method) -> Vec<Ga
     gates.extend(warmth(around.eyes_on_min, evidence.and_then(|evidence| evidence.minutes_since_on)));
     gates.push(match hands {
         Ok(_) => method_gate(around, method),
-        Err(why) => closed("Method", sentence(&why.to_string())),
+        Err(why) => closed(Need::Method, sentence(&why.to_string())),
     });
     gates
 }
@@ -39,7 +39,7 @@ pub fn gates(around: &GraspAround, choice: HandChoice, method: Method) -> Vec<Ga
 /// A hand that holds something would drop it to grasp something else.
 pub fn full_hand(held: &InHand) -> Gate {
     closed(
-        FULL_HAND,
+        Need::Hand,
         format!(
             "The {} is in the {} hand: put it down, or hand it over, first.",
             held.object.to_lowercase(),
@@ -55,7 +55,7 @@ fn of_any(hands: &[Hand], gate: impl Fn(Hand) -> Gate) -> Gate {
     let first = gates.remove(0);
     match gates.into_iter().find(|gate| gate.state == GateState::Shut) {
         Some(shut) if first.state != GateState::Shut => {
-            doubtful(first.name, format!("{} The other hand grasps.", shut.text))
+            doubtful(first.of, format!("{} The other hand grasps.", shut.text))
         }
         _ => first,
     }
@@ -66,32 +66,32 @@ pub fn shut(gates: &[Gate]) -> Option<&Gate> {
     gates.iter().find(|gate| gate.state == GateState::Shut)
 }
 
-pub(super) fn open(name: &'static str, text: impl Into<String>) -> Gate {
-    Gate { name, state: GateState::Open, text: text.into() }
+pub(super) fn open(of: Need, text: impl Into<String>) -> Gate {
+    Gate { of, state: GateState::Open, text: text.into() }
 }
 
-pub(super) fn closed(name: &'static str, text: impl Into<String>) -> Gate {
-    Gate { name, state: GateState::Shut, text: text.into() }
+pub(super) fn closed(of: Need, text: impl Into<String>) -> Gate {
+    Gate { of, state: GateState::Shut, text: text.into() }
 }
 
-pub(super) fn doubtful(name: &'static str, text: impl Into<String>) -> Gate {
-    Gate { name, state: GateState::Doubtful, text: text.into() }
+pub(super) fn doubtful(of: Need, text: impl Into<String>) -> Gate {
+    Gate { of, state: GateState::Doubtful, text: text.into() }
 }
 
 fn connected(robot: &RobotView) -> Gate {
     match &robot.connection {
-        Connection::Connected { to, .. } => open("Robot", format!("Connected to {to}.")),
-        Connection::Connecting { .. } => closed("Robot", "It is being connected: wait a moment."),
-        Connection::Lost { reason, .. } => closed("Robot", reason.clone()),
-        Connection::None => closed("Robot", "No robot is connected: connect it, or start the twin."),
+        Connection::Connected { to, .. } => open(Need::Robot, format!("Connected to {to}.")),
+        Connection::Connecting { .. } => closed(Need::Robot, "It is being connected: wait a moment."),
+        Connection::Lost { reason, .. } => closed(Need::Robot, reason.clone()),
+        Connection::None => closed(Need::Robot, "No robot is connected: connect it, or start the twin."),
     }
 }
 
 fn stop(robot: &RobotView) -> Gate {
     if robot.stopped {
-        closed("STOP", "STOP is latched: release it, at the top right.")
+        closed(Need::Stop, "STOP is latched: release it, at the top right.")
     } else {
-        open("STOP", "Not pressed. Esc or space presses it.")
+        open(Need::Stop, "Not pressed. Esc or space presses it.")
     }
 }
 
@@ -99,21 +99,21 @@ fn stop(robot: &RobotView) -> Gate {
 fn run(around: &GraspAround) -> Option<Gate> {
     let paused = "A run of touches is paused; it goes on from wherever the arm is left.";
     match around.goes_first {
-        Some(why) => Some(closed("Run", why)),
-        None => around.touches_paused.then(|| open("Run", paused)),
+        Some(why) => Some(closed(Need::Run, why)),
+        None => around.touches_paused.then(|| open(Need::Run, paused)),
     }
 }
 
 /// Every joint of the arm is known, holds, is not too hot and has its force.
 fn joints(around: &GraspAround, arm: &str) -> Gate {
     let (robot, rig) = (&around.robot, &around.described);
-    let Some(arm) = rig.arm(arm) else { return closed("Arm", "The robot has no such arm.") };
+    let Some(arm) = rig.arm(arm) else { return closed(Need::Arm, "The robot has no such arm.") };
     let mut of_arm = robot
         .joints
         .iter()
         .filter(|joint| arm.joints.contains(&joint.joint) || arm.hand.contains(&joint.joint));
     if robot.measured.is_none() {
-        return closed("Arm", "The joints have not been read yet: wait a moment.");
+        return closed(Need::Arm, "The joints have not been read yet: wait a moment.");
     }
     let mut warm = None;
     let trouble = of_arm.find_map(|joint| {
@@ -122,7 +122,7 @@ fn joints(around: &GraspAround, arm: &str) -> Gate {
             let advice = robot.advice_for(joint.joint);
             return Some(format!("It is not known where {title} is: {advice}."));
         }
-        if joint.torque_on != Some(true) || joint.let_go || joint.no_force {
+        if joint.has_to_be_held() {
             return Some(format!("{title} does not hold: choose Hold all joints in Robot."));
         }
         let temperature_c = joint.temperature_c?;
@@ -135,9 +135,9 @@ fn joints(around: &GraspAround, arm: &str) -> Gate {
         None
     });
     match (trouble, warm) {
-        (Some(trouble), _) => closed("Arm", trouble),
-        (None, Some(warm)) => doubtful("Arm", warm),
-        (None, None) => open("Arm", format!("{} holds, all joints are known.", arm.title)),
+        (Some(trouble), _) => closed(Need::Arm, trouble),
+        (None, Some(warm)) => doubtful(Need::Arm, warm),
+        (None, None) => open(Need::Arm, format!("{} holds, all joints are known.", arm.title)),
     }
 }
 
@@ -153,24 +153,25 @@ fn load(around: &GraspAround, arm: &str) -> Gate {
     });
     match pushes {
         Some(joint) => closed(
-            "Load",
+            Need::Load,
             format!("{} pushes against something: move the arm to where nothing is in its way.", joint.title),
         ),
-        None => open("Load", "No joint pushes against anything."),
+        None => open(Need::Load, "No joint pushes against anything."),
     }
 }
 
 fn eyes(around: &GraspAround) -> Gate {
     match &around.source.status {
-        _ if !around.own_eyes => {
-            closed("Eyes", "The images are not those of this robot's eyes: open its eyes at the top left.")
-        }
-        SourceStatus::Running => open("Eyes", "Both eyes deliver."),
-        SourceStatus::Opening => closed("Eyes", "The eyes are being opened: wait a moment."),
-        SourceStatus::Lost { reason, .. } => closed("Eyes", reason.clone()),
-        SourceStatus::Paused => closed("Eyes", "The eyes are held still: let them go on."),
+        _ if !around.own_eyes => closed(
+            Need::Eyes,
+            "The images are not those of this robot's eyes: open its eyes at the top left.",
+        ),
+        SourceStatus::Running => open(Need::Eyes, "Both eyes deliver."),
+        SourceStatus::Opening => closed(Need::Eyes, "The eyes are being opened: wait a moment."),
+        SourceStatus::Lost { reason, .. } => closed(Need::Eyes, reason.clone()),
+        SourceStatus::Paused => closed(Need::Eyes, "The eyes are held still: let them go on."),
         SourceStatus::None | SourceStatus::Ended => {
-            closed("Eyes", "No eyes are open: open them at the top left.")
+            closed(Need::Eyes, "No eyes are open: open them at the top left.")
         }
     }
 }
@@ -186,14 +187,14 @@ fn places(around: &GraspAround) -> Gate {
     .filter_map(|(lacks, what)| lacks.then_some(what))
     .collect();
     if let Some(said) = &around.in_doubt {
-        return doubtful(PLACES, said.clone());
+        return doubtful(Need::Places, said.clone());
     }
     if lacks.is_empty() {
-        return open(PLACES, "Lenses, mount and screen were calibrated.");
+        return open(Need::Places, "Lenses, mount and screen were calibrated.");
     }
     let what = plumbline_model::listed(&lacks);
     let wide = if around.model.unmeasured().mount { WIDE } else { "" };
-    doubtful(PLACES, format!("Not calibrated, taken as described: {what}.{wide}"))
+    doubtful(Need::Places, format!("Not calibrated, taken as described: {what}.{wide}"))
 }
 
 /// Said while nobody measured how the eyes sit in the head.
@@ -202,8 +203,13 @@ const WIDE: &str = " The ± of places holds how far mounts usually are off: cali
 fn method_gate(around: &GraspAround, method: Method) -> Gate {
     let name = method.name().to_uppercase();
     match lacks(method, &around.corrections) {
-        Some(lacks) => closed("Method", lacks),
-        None => open("Method", format!("{name} has what it needs.")),
+        Some(lacks) => closed(Need::Method, lacks),
+        // It can grasp so, but not with what it is for.
+        None if method == Method::M5 && around.model.is_nominal() => doubtful(
+            Need::Method,
+            "No effect was found and added yet: M5 sends the arm as it is described and trusts to its eyes alone. Look for what makes the arm miss in step 5, Gap.",
+        ),
+        None => open(Need::Method, format!("{name} has what it needs.")),
     }
 }
 
@@ -250,7 +256,7 @@ mod tests {
         };
         let run = |around: &GraspAround| {
             let gates = gates(around, HandChoice::Auto, Method::M5);
-            gates.into_iter().find(|gate| gate.name == "Run").map(|gate| gate.state)
+            gates.into_iter().find(|gate| gate.of == Need::Run).map(|gate| gate.state)
         };
         assert_eq!(run(&connected(Some("A run of touches moves the arm."))), Some(GateState::Shut));
         assert_eq!(run(&connected(None)), None);

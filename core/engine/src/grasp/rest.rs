@@ -4,7 +4,7 @@ use plumbline_grasp::attempt::{FINGER_HANGS_RAD, HANGS_RAD};
 
 use super::around::GraspAround;
 use super::gates::{closed, doubtful, open};
-use super::view::Gate;
+use super::view::{Gate, Need};
 use crate::robot::view::{JointView, MotionState};
 
 /// Faster than this a joint turns, rad/s.
@@ -15,9 +15,11 @@ pub(super) fn rest(around: &GraspAround, arm: &str) -> Gate {
     let robot = &around.robot;
     if matches!(robot.motion, MotionState::Moving { .. }) {
         // A grasp that is under way, or a move: what turns now turns on purpose, and follows a little behind.
-        return doubtful("Rest", "The arm is on its way.");
+        return doubtful(Need::Rest, "The arm is on its way.");
     }
-    let Some(arm) = around.described.arm(arm) else { return closed("Rest", "The robot has no such arm.") };
+    let Some(arm) = around.described.arm(arm) else {
+        return closed(Need::Rest, "The robot has no such arm.");
+    };
     let of_arm = |joint: &&JointView| {
         (arm.joints.contains(&joint.joint) || arm.hand.contains(&joint.joint))
             && joint.torque_on == Some(true)
@@ -27,20 +29,20 @@ pub(super) fn rest(around: &GraspAround, arm: &str) -> Gate {
     let turns = |joint: &&JointView| joint.speed_rad_s.is_some_and(|speed| speed.abs() > TURNS_RAD_S);
     if let Some(joint) = robot.joints.iter().filter(of_arm).find(turns) {
         // A reading may be half a second old: the grasp itself waits, and refuses if it does not end.
-        return doubtful("Rest", format!("{} turns: the grasp waits until it stands.", joint.title));
+        return doubtful(Need::Rest, format!("{} turns: the grasp waits until it stands.", joint.title));
     }
     let off_rad = |joint: &JointView| Some((joint.angle_rad? - robot.commanded.as_ref()?[joint.joint]).abs());
     let mut hanging = robot.joints.iter().filter(of_arm).filter_map(|joint| Some((joint, off_rad(joint)?)));
     match hanging.find(|(joint, off_rad)| *off_rad > may_hang_rad(joint)) {
         Some((joint, off_rad)) => closed(
-            "Rest",
+            Need::Rest,
             format!(
                 "{} is {:.0}° from where it was sent: free the arm by hand, or press Home.",
                 joint.title,
                 off_rad.to_degrees()
             ),
         ),
-        None => open("Rest", "The arm stands where it was sent."),
+        None => open(Need::Rest, "The arm stands where it was sent."),
     }
 }
 

@@ -49,7 +49,12 @@ pub struct GraspView {
 impl GraspView {
     /// Why nothing can be grasped now, and what to do: the first gate that is shut.
     pub fn trouble(&self) -> Option<&str> {
-        self.gates.iter().find(|gate| gate.state == GateState::Shut).map(|gate| gate.text.as_str())
+        self.shut().map(|gate| gate.text.as_str())
+    }
+
+    /// The first gate that is shut.
+    pub fn shut(&self) -> Option<&Gate> {
+        self.gates.iter().find(|gate| gate.state == GateState::Shut)
     }
 
     /// Between which steps the attempt holds by itself, until it is told to go on.
@@ -91,20 +96,68 @@ pub struct MethodView {
 /// Something that is looked at before anything moves.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Gate {
-    /// What, in a word.
-    pub name: &'static str,
+    /// What it looks at.
+    pub of: Need,
     /// Whether it lets pass.
     pub state: GateState,
     /// What is so, and what to do where it is shut. A sentence.
     pub text: String,
 }
 
-/// Name of the gate that says how well places on the table are known.
-pub const PLACES: &str = "Places";
-/// Name of the gate that is shut while a hand holds something.
-pub const FULL_HAND: &str = "Hand";
-/// Name of the gate of how warm the eyes are.
-pub const WARMTH: &str = "Warmth";
+/// What is looked at before anything moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Need {
+    /// Whether a robot is connected.
+    Robot,
+    /// Whether STOP is pressed.
+    Stop,
+    /// Whether something else moves it.
+    Run,
+    /// Whether the joints of the arm hold and are known.
+    Arm,
+    /// Whether a joint pushes against something.
+    Load,
+    /// Whether the arm stands where it was sent.
+    Rest,
+    /// Whether both eyes deliver.
+    Eyes,
+    /// How well places on the table are known.
+    Places,
+    /// How warm the eyes are.
+    Warmth,
+    /// Whether the method has what it needs.
+    Method,
+    /// Whether the thing stands where the method was trained.
+    Area,
+    /// Whether a hand is free: it is shut while one holds something.
+    Hand,
+    /// Whether there is what the arm was learned from.
+    Touches,
+}
+
+impl Need {
+    /// What a step of a hand alone needs: neither eyes nor a method.
+    pub const OF_A_HAND: [Self; 3] = [Self::Robot, Self::Stop, Self::Arm];
+
+    /// In a word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Robot => "Robot",
+            Self::Stop => "STOP",
+            Self::Run => "Run",
+            Self::Arm => "Arm",
+            Self::Load => "Load",
+            Self::Rest => "Rest",
+            Self::Eyes => "Eyes",
+            Self::Places => "Places",
+            Self::Warmth => "Warmth",
+            Self::Method => "Method",
+            Self::Area => "Area",
+            Self::Hand => "Hand",
+            Self::Touches => "Touches",
+        }
+    }
+}
 
 /// Whether a gate lets pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

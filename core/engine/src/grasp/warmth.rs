@@ -1,13 +1,13 @@
 //! The gate of how warm the eyes are.
 
-use super::view::{Gate, GateState, WARMTH};
+use super::view::{Gate, GateState, Need};
 use crate::ground::warming::Warmth;
 
 /// Nothing where it is not known how long they have been on, or were when they were calibrated. It warns
 /// and does not refuse: M5 looks for hand and object with the same eyes and knows how high things stand.
 pub(super) fn warmth(on_min: Option<f64>, calibrated_min: Option<f64>) -> Option<Gate> {
     let (on_min, calibrated_min) = (on_min?, calibrated_min?);
-    let doubt = |text: String| Some(Gate { name: WARMTH, state: GateState::Doubtful, text });
+    let doubt = |text: String| Some(Gate { of: Need::Warmth, state: GateState::Doubtful, text });
     match Warmth::of(on_min, calibrated_min) {
         Warmth::Colder { wait_min } => doubt(format!(
             "The eyes have been on for {on_min:.0} min and were calibrated after {calibrated_min:.0} min: places are \
@@ -19,7 +19,7 @@ pub(super) fn warmth(on_min: Option<f64>, calibrated_min: Option<f64>) -> Option
         )),
         Warmth::Alike => {
             let text = "The eyes are about as warm as when they were calibrated.".to_owned();
-            Some(Gate { name: WARMTH, state: GateState::Open, text })
+            Some(Gate { of: Need::Warmth, state: GateState::Open, text })
         }
     }
 }

@@ -121,7 +121,9 @@ impl GraspResult {
                 Err(why) => format!("No grasp is planned: {why}."),
             },
             Self::Grasped(done) => match &done.attempt.outcome {
-                Some(Outcome::Success) => format!("The {} is held.", done.attempt.object.to_lowercase()),
+                Some(Outcome::Success) => {
+                    format!("Fingers and eyes say: the {} is held.", done.attempt.object.to_lowercase())
+                }
                 Some(Outcome::Failed { why, .. }) => format!("Not held: {why}."),
                 Some(Outcome::Refused { why }) => format!("Not grasped: {why}."),
                 None => "The grasp ended without a word.".to_owned(),

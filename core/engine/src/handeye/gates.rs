@@ -4,7 +4,7 @@ use plumbline_grasp::{Hand, HandChoice, Method};
 
 use super::around::HandEyeAround;
 use crate::grasp::gates::gates as gates_of_grasp;
-use crate::grasp::view::{Gate, GateState, PLACES};
+use crate::grasp::view::{Gate, GateState, Need};
 
 /// All gates, in the order in which they are passed. Both arms move.
 pub fn gates(around: &HandEyeAround) -> Vec<Gate> {
@@ -13,13 +13,13 @@ pub fn gates(around: &HandEyeAround) -> Vec<Gate> {
     let mut gates: Vec<Gate> = vec![];
     for gate in hands.flat_map(|hand| gates_of_grasp(&around.grasp, HandChoice::from(hand), Method::M5)) {
         // Of both arms, the one that lets pass less is told.
-        match gates.iter_mut().find(|known| known.name == gate.name) {
+        match gates.iter_mut().find(|known| known.of == gate.of) {
             Some(known) if rank(gate.state) > rank(known.state) => *known = gate,
             Some(_) => {}
             None => gates.push(gate),
         }
     }
-    gates.retain(|gate| ![PLACES, "Method"].contains(&gate.name));
+    gates.retain(|gate| ![Need::Places, Need::Method].contains(&gate.of));
     gates.push(calibrated(around));
     gates.push(touched(around));
     gates
@@ -33,23 +33,23 @@ fn rank(state: GateState) -> usize {
     }
 }
 
-fn gate(name: &'static str, is_open: bool, [open, shut]: [&str; 2]) -> Gate {
+fn gate(of: Need, is_open: bool, [open, shut]: [&str; 2]) -> Gate {
     let (state, text) = if is_open { (GateState::Open, open) } else { (GateState::Shut, shut) };
-    Gate { name, state, text: text.to_owned() }
+    Gate { of, state, text: text.to_owned() }
 }
 
 fn calibrated(around: &HandEyeAround) -> Gate {
     let grasp = &around.grasp;
     let is_open = grasp.calibration.is_some() && grasp.has_mount && grasp.has_screen;
     if let Some(why) = grasp.in_doubt.as_ref().filter(|_| is_open) {
-        return Gate { name: PLACES, state: GateState::Doubtful, text: why.clone() };
+        return Gate { of: Need::Places, state: GateState::Doubtful, text: why.clone() };
     }
     let shut = match (grasp.calibration.is_some(), grasp.has_mount) {
         (false, _) => "The lenses are not calibrated: calibrate the eyes first.",
         (true, false) => "How the eyes sit in the head was not measured: calibrate the mount first.",
         (true, true) => "Where the screen lies was not measured: place the screen first, in Touch.",
     };
-    gate(PLACES, is_open, ["Lenses, mount and screen were calibrated.", shut])
+    gate(Need::Places, is_open, ["Lenses, mount and screen were calibrated.", shut])
 }
 
 fn touched(around: &HandEyeAround) -> Gate {
@@ -63,5 +63,5 @@ fn touched(around: &HandEyeAround) -> Gate {
         "The model in use is not read yet, or its file cannot be used: wait a moment, else see the log.";
     let shut = if around.touches.is_some() { unread.to_owned() } else { none() };
     let is_open = around.touches.is_some() && around.added.is_some();
-    gate("Touches", is_open, ["What the arm was learned from is there.", &shut])
+    gate(Need::Touches, is_open, ["What the arm was learned from is there.", &shut])
 }

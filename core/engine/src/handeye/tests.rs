@@ -15,7 +15,7 @@ use super::view::HandEyeView;
 use super::work::{Context, HandEyeResult};
 use super::*;
 use crate::grasp::GraspAround;
-use crate::grasp::view::GateState;
+use crate::grasp::view::{GateState, Need};
 use crate::ground::jobs::JobId;
 use crate::ground::jobs::list::JobList;
 use crate::ground::notice::Notices;
@@ -168,8 +168,8 @@ fn what_lacks_is_said_before_anything_moves_and_nothing_is_accepted_that_was_not
     let mut desk = Desk::new(&rig, &nominal, folder.path());
     let view = desk.view();
     assert!(view.trouble().is_some_and(|why| why.contains("No robot is connected")), "{:?}", view.gates);
-    let shut = |name: &str| view.gates.iter().any(|gate| gate.name == name && gate.state == GateState::Shut);
-    assert!(shut("Places") && shut("Touches"), "{:?}", view.gates);
+    let shut = |of: Need| view.gates.iter().any(|gate| gate.of == of && gate.state == GateState::Shut);
+    assert!(shut(Need::Places) && shut(Need::Touches), "{:?}", view.gates);
     assert!(desk.tell(HandEyeCommand::Look).contains("No robot is connected"));
     assert!(desk.tell(HandEyeCommand::Accept).contains("nothing to accept"));
     desk.around.is_changing = true;
@@ -184,7 +184,7 @@ fn which_touches_lack_is_said_with_the_folder_and_a_model_that_was_not_read_is_n
     let mut desk = Desk::new(&rig, &Arc::new(RigModel::nominal(&rig)), folder.path());
     let of_touches = |desk: &mut Desk| {
         let gates = desk.view().gates.clone();
-        gates.iter().find(|gate| gate.name == "Touches").cloned().expect("it is looked at")
+        gates.iter().find(|gate| gate.of == Need::Touches).cloned().expect("it is looked at")
     };
     let said = of_touches(&mut desk);
     assert!(said.state == GateState::Shut && said.text.contains("found in lab/sessions:"), "{}", said.text);

@@ -91,8 +91,15 @@ impl HandEyeSummary {
     /// How far a hand is seen from where its arm has it, rms on looks that were not used, before and after, m: of the
     /// hand that is worse after.
     pub fn error_m(&self) -> Option<[f64; 2]> {
-        let of_hands = self.hands.iter().filter_map(|(_, outcome)| outcome.figures());
-        let errors = of_hands.filter_map(|figures| Some([figures.before_m?, figures.after_m?]));
-        errors.max_by(|[_, a_m], [_, b_m]| a_m.total_cmp(b_m))
+        self.worse().map(|(_, error_m)| error_m)
+    }
+
+    /// The same, and which hand that is.
+    pub fn worse(&self) -> Option<(GraspHand, [f64; 2])> {
+        let errors = self.hands.iter().filter_map(|(hand, outcome)| {
+            let figures = outcome.figures()?;
+            Some((*hand, [figures.before_m?, figures.after_m?]))
+        });
+        errors.max_by(|(_, [_, a_m]), (_, [_, b_m])| a_m.total_cmp(b_m))
     }
 }

@@ -104,6 +104,16 @@ pub enum NoWay {
         /// What.
         b: String,
     },
+    /// What this arm does not move meets something where it stands.
+    #[error(
+        "The {a} meets the {b} where it stands, and no way is planned beside that. Bring it away first: Show the way home, in Robot."
+    )]
+    InTheWay {
+        /// What.
+        a: String,
+        /// What it meets.
+        b: String,
+    },
     /// Everything on the way home is barred.
     #[error("There is no free way home: {leg}.")]
     NotAway {

@@ -72,7 +72,20 @@ impl Planner {
                 Err(why) => refused = Err(why),
             }
         }
+        // Another target or a smaller area would be refused like this one.
+        self.others_stand_free(from, around)?;
         refused
+    }
+
+    /// What this arm does not move meets nothing: the arm itself is thought away, at home.
+    fn others_stand_free(&self, from: &Posture, around: &Around) -> Result<(), NoWay> {
+        let standing = from.with(&self.joints, &self.rig.home().of(&self.joints));
+        match around.bodies.check_posture(&standing, &around.allowances)? {
+            PostureCheck::Collides { contact, .. } => {
+                Err(NoWay::InTheWay { a: contact.a_name, b: contact.b_name })
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Nothing but the finger touches, and nothing but the screen.

@@ -179,6 +179,11 @@ pub struct JointView {
 }
 
 impl JointView {
+    /// Whether it has to be taken hold of before it can be moved.
+    pub fn has_to_be_held(&self) -> bool {
+        self.torque_on != Some(true) || self.let_go || self.no_force
+    }
+
     /// Of a servo that was not heard yet.
     pub fn unheard(servo: &Servo, limits: Limits) -> Self {
         Self {

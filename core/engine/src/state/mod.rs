@@ -243,7 +243,7 @@ impl State {
             Outcome::Done(result) => {
                 let summary = result.summary();
                 if self.jobs.is_worth_telling(id) {
-                    self.notices.add(NoticeLevel::Success, &*summary);
+                    self.notices.add(result.level(), &*summary);
                 }
                 self.work_done(id, result);
                 JobState::Done { summary }

@@ -246,9 +246,18 @@ fn of_correction(id: Option<String>, model: Option<&CorrectionModel>, before_m: 
     }
 }
 
+/// What the errors of a model are that has all that is usually wrong with arms.
+const RMS: &str = "rms error along the glass and in height, on touches that were held out; a search counts the mean along the glass";
+
 fn of_effects(model: &RigModel, titles: Vec<String>) -> Standing {
-    let Some(step) = model.history.iter().rev().find(|step| step.can_be_undone()) else {
+    let Some((place, step)) = model.history.iter().enumerate().rev().find(|(_, step)| step.can_be_undone())
+    else {
         return nothing(Subject::Effects, "the robot as it is described");
+    };
+    let basis = match (step.gap.is_some(), model.is_rms(place)) {
+        (false, _) => "",
+        (true, false) => "mean error on rows that were not used",
+        (true, true) => RMS,
     };
     let of =
         |value: f64, unit: &str| if unit == "px" { Figure::Pixels(value) } else { Figure::Meters(value) };
@@ -259,7 +268,7 @@ fn of_effects(model: &RigModel, titles: Vec<String>) -> Standing {
         title: if titles.is_empty() { "the robot as it is described".to_owned() } else { titles.join("; ") },
         before: gap.map(|gap| of(gap.before, &gap.unit)),
         after: gap.map(|gap| of(gap.after, &gap.unit)),
-        basis: if gap.is_some() { "mean error on rows that were not used".to_owned() } else { String::new() },
+        basis: basis.to_owned(),
         accepted: Some(step.at),
     }
 }

@@ -240,3 +240,27 @@ fn places_are_sent_as_the_robot_is_described_beside_what_the_effects_say() {
     let kept = serde_json::to_string(&plan).expect("a plan is kept");
     assert_eq!(serde_json::from_str::<plan::RunPlan>(&kept).expect("read again").touches, plan.touches);
 }
+
+/// An arm that sank onto the table is named with the way out: no smaller area would help.
+#[test]
+fn what_lies_in_the_way_is_named_with_what_brings_it_away() {
+    let planner = planner(ScreenPlace::Nominal);
+    let rig = rig();
+    let from = planner.ready(&rig.home());
+    let target = Pixel::new(1000.0, 700.0);
+    let wanted = Wanted::straight(target, planner.rig().touchscreen.point_at(target), Side::Above);
+    assert!(planner.plan(&wanted, &from).is_ok(), "from where it waits it can be touched");
+    let left = &rig.arm("left").expect("there is one").joints;
+    let mut said = vec![];
+    for fraction in [0.2, 0.4, 0.6, 0.8, 1.0] {
+        // As a limp arm sinks: the joints go from home to zero, where it hangs down.
+        let hanging = from.with(left, &vec![0.0; left.len()]);
+        if let Err(why) = planner.plan(&wanted, &from.toward(&hanging, fraction)) {
+            said.push(why.to_string());
+        }
+    }
+    let named = said.iter().find(|why| why.contains("where it stands"));
+    let named = named.unwrap_or_else(|| panic!("{said:#?}"));
+    assert!(named.contains("left") && named.contains("Show the way home"), "{named}");
+    assert!(said.iter().all(|why| !why.contains("smaller area")), "{said:#?}");
+}

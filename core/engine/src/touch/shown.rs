@@ -1,6 +1,7 @@
 //! What the window shows of the workflow.
 
 use std::sync::Arc;
+use std::time::Instant;
 
 use plumbline_model::counted;
 use plumbline_model::touch_plan::{Finger, Purpose};
@@ -100,7 +101,7 @@ impl TouchWorkflow {
     }
 
     /// What the window shows.
-    pub(super) fn shown(&self, around: &TouchAround) -> TouchView {
+    pub(super) fn shown(&self, around: &TouchAround, now: Instant) -> TouchView {
         let Seen { plan, touches, counts, figures, figures_described, .. } = self.seen.clone();
         TouchView {
             step: self.step_state(around),
@@ -109,7 +110,7 @@ impl TouchWorkflow {
             plan,
             touches,
             counts,
-            remaining: self.active_run().and_then(Run::remaining),
+            remaining: self.active_run().and_then(|run| run.remaining(now)),
             held: self.run.as_ref().map_or(0, |run| run.held),
             figures,
             figures_described,

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use jiff::Timestamp;
 use plumbline_model::files::{self, Size};
-use plumbline_model::session::{Chain, ExtraColumn, Manifest, TouchTable, Touchscreen, names};
+use plumbline_model::session::{Chain, ExtraColumn, Manifest, TouchRow, TouchTable, Touchscreen, names};
 use plumbline_model::touch_plan::{Finger, Purpose};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -129,11 +129,26 @@ pub fn keep_placement(session: &Path, at: Timestamp) -> Result<(), RunError> {
     write_json(&session.join(PROGRESS), &progress)
 }
 
+/// Times that count from another connection than those before are not told: nobody knows how long the robot was on.
+fn forget_times(rows: &mut [TouchRow]) {
+    let times: Vec<Option<f64>> = rows.iter().map(|row| row.t_secs).collect();
+    let mut newest = f64::NEG_INFINITY;
+    let is_back = |time: &Option<f64>| {
+        let back = time.is_some_and(|t_secs| t_secs < newest);
+        newest = time.map_or(newest, |t_secs| newest.max(t_secs));
+        back
+    };
+    if let Some(first) = times.iter().position(is_back) {
+        rows[first..].iter_mut().for_each(|row| row.t_secs = None);
+    }
+}
+
 fn write_table(file: &Path, joints: &[String], records: &[&TouchRecord]) -> Result<(), RunError> {
     if records.is_empty() {
         return InUse::new(file.to_owned()).forget().map_err(RunError::unwritable(file));
     }
-    let rows: Vec<_> = records.iter().map(|record| record.row()).collect();
+    let mut rows: Vec<_> = records.iter().map(|record| record.row()).collect();
+    forget_times(&mut rows);
     let of_joint = |i: usize| {
         let later = move |row: usize| records[row].later_encoder_rad.get(i).copied().flatten();
         let direction = move |row: usize| records[row].direction.get(i).copied().map(f64::from);

@@ -189,7 +189,7 @@ impl Desk {
     }
 
     pub fn view(&self) -> TouchView {
-        self.workflow.shown(&self.around())
+        self.workflow.shown(&self.around(), self.clock)
     }
 
     /// The newest message.

@@ -1,6 +1,6 @@
 //! The first grasp on the way.
 
-use plumbline_engine::view::{GateState, GraspOutcome, GraspPhase, WARMTH};
+use plumbline_engine::view::{GateState, GraspOutcome, GraspPhase, Need};
 use plumbline_engine::{HandStep, View};
 
 use super::super::{grasp, handeye, robot};
@@ -43,7 +43,7 @@ pub(super) fn said(view: &View) -> Said {
     if let Some(in_hand) = &of_view.held {
         return grasp::in_hand(in_hand, run.map(|run| &**run)).into();
     }
-    let cold = of_view.gates.iter().find(|gate| gate.name == WARMTH && gate.state == GateState::Doubtful);
+    let cold = of_view.gates.iter().find(|gate| gate.of == Need::Warmth && gate.state == GateState::Doubtful);
     if let Some(warm) = cold.and_then(|cold| handeye::to_be_warmed(view, cold)) {
         return warm.into();
     }
@@ -51,7 +51,7 @@ pub(super) fn said(view: &View) -> Said {
         return lay_out(view, run.is_some());
     }
     if let Some(trouble) = of_view.trouble() {
-        if trouble.contains("Hold all joints") {
+        if grasp::has_to_be_held(view) {
             let hold = vec![Action::Robot(RobotAction::TorqueOn)];
             return Said::press("All joints hold where they are.", "Hold all joints", hold);
         }

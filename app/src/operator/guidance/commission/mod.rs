@@ -32,6 +32,16 @@ pub struct Course {
     pub press: Press,
 }
 
+impl Course {
+    /// Whether pressing the button moves the robot.
+    pub fn begins_to_move(&self) -> bool {
+        match &self.press {
+            Press::Do { actions, .. } => actions.iter().any(|action| action.begins_to_move()),
+            Press::Wait { .. } => false,
+        }
+    }
+}
+
 /// What the one button does.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Press {
@@ -114,8 +124,7 @@ fn said(view: &View, step: Option<CommissionStep>, screen: Screen) -> Said {
     }
     let Some(step) = step else { return all_done(view) };
     if view.robot.stopped && view.robot.connection.is_connected() {
-        return Said::wait("Stopped: nothing moves until you press Release STOP, at the top right.", None)
-            .warn();
+        return Said::wait(super::stopped_words(view), None).warn();
     }
     if let Some(running) = running(view) {
         return running;
@@ -140,7 +149,8 @@ fn troubled(view: &View, step: CommissionStep) -> Option<Said> {
     let moves = !matches!(step, CommissionStep::Eyes | CommissionStep::Effects);
     let stands =
         view.robot.connection.is_connected() && !matches!(view.robot.motion, MotionState::Moving { .. });
-    robot::let_go(&view.robot).filter(|_| moves && stands).map(Said::from)
+    let troubled = robot::limp(&view.robot).or_else(|| robot::let_go(&view.robot));
+    troubled.filter(|_| moves && stands).map(Said::from)
 }
 
 /// Whatever runs is waited for.

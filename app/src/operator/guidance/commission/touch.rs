@@ -107,6 +107,18 @@ fn run(view: &View, purpose: Purpose, plan: Said) -> Said {
             Said::press(sentence, label, vec![Action::Touch(TouchAction::Start)])
         }
         (TouchPhase::Planned, Some(_)) => touch(view).into(),
+        (TouchPhase::Idle, _) => unfinished(view, purpose).unwrap_or(plan),
         _ => plan,
     }
+}
+
+/// A run that was begun on this way and not finished, as after a restart: it is gone on with.
+fn unfinished(view: &View, purpose: Purpose) -> Option<Said> {
+    let began = view.commission.began?;
+    let run = view.touch.unfinished.first().filter(|run| run.purpose == purpose && run.started >= began)?;
+    let sentence = format!(
+        "{} of {} touches were made, then it ended. It goes on exactly where it was; opening moves nothing.",
+        run.touched, run.planned
+    );
+    Some(Said::press(sentence, "Open the unfinished run", vec![Action::Touch(TouchAction::OpenUnfinished)]))
 }

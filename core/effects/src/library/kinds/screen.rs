@@ -23,7 +23,7 @@ pub(super) static SCREEN_BUMPED: Entry = Entry {
 };
 
 pub(super) static SCREEN_SCALE: Entry = Entry {
-    about: "image larger or smaller than in the rig file",
+    about: "image larger or smaller than it is described",
     meaning: "A pixel of the screen has another size than the rig file says.",
     remedy: "Measure the lit area with a ruler and correct the rig file.",
     parameters: &[parameter("scale_u", 0.075), parameter("scale_v", 0.075)],

@@ -9,7 +9,7 @@ use plumbline_twin::Toy;
 
 use super::bench::{Bench, tracks_in, words};
 use crate::command::{GraspCommand, HandStep, RobotCommand, TwinCommand};
-use crate::view::{GateState, GraspOutcome, GraspStep, MotionState};
+use crate::view::{GateState, GraspOutcome, GraspStep, MotionState, Need};
 
 const EASY_M: [f64; 2] = [0.32, -0.15];
 /// Hot enough that it is too hot soon, °C.
@@ -29,7 +29,7 @@ fn a_servo_that_gets_too_hot_ends_it_and_the_next_one_waits_until_it_is_cool() {
         view.robot.joints.iter().filter_map(|joint| joint.temperature_c).fold(0.0, f64::max)
     };
     let view = bench.until("a hot servo", |view| hottest(view) >= NEARLY_HOT_C);
-    let gate = view.grasp.gates.iter().find(|gate| gate.name == "Arm").expect("it is looked at");
+    let gate = view.grasp.gates.iter().find(|gate| gate.of == Need::Arm).expect("it is looked at");
     assert_eq!(gate.state, GateState::Doubtful, "{gate:?}");
     assert!(gate.text.contains("gets warm"), "{gate:?}");
     let run = bench.grasp();
@@ -40,7 +40,7 @@ fn a_servo_that_gets_too_hot_ends_it_and_the_next_one_waits_until_it_is_cool() {
         words(run.outcome.as_ref())
     );
     let view = bench.until("it holds", |view| matches!(view.robot.motion, MotionState::Holding { .. }));
-    let gate = view.grasp.gates.iter().find(|gate| gate.name == "Arm").expect("it is looked at");
+    let gate = view.grasp.gates.iter().find(|gate| gate.of == Need::Arm).expect("it is looked at");
     assert_eq!(gate.state, GateState::Shut, "{gate:?}");
     assert!(gate.text.contains("let it cool down"), "{gate:?}");
     bench.send(TwinCommand::Fault { name: "hot-servo".to_owned(), on: false });

@@ -7,7 +7,7 @@ use plumbline_twin::Toy;
 use super::bench::{Bench, words};
 use crate::command::{GraspCommand, HandStep, RobotCommand, TwinCommand};
 use crate::robot::view::Connection;
-use crate::view::{Gate, GateState, GraspOutcome, GraspStep, View};
+use crate::view::{Gate, GateState, GraspOutcome, GraspStep, Need, View};
 
 const EASY_M: [f64; 2] = [0.32, -0.15];
 /// What holds moves by less, rad.
@@ -35,7 +35,7 @@ fn broken_in(bench: &Bench, step: GraspStep, name: &str) -> (Record, String) {
 }
 
 fn arm_gate(view: &View) -> Option<&Gate> {
-    view.grasp.gates.iter().find(|gate| gate.name == "Arm")
+    view.grasp.gates.iter().find(|gate| gate.of == Need::Arm)
 }
 
 fn grasps_again(bench: &Bench) {

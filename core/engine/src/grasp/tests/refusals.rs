@@ -3,7 +3,7 @@
 use plumbline_grasp::{HandChoice, Method};
 
 use crate::command::{Command, GraspCommand, GraspTarget, HandStep};
-use crate::grasp::view::GateState;
+use crate::grasp::view::{GateState, Need};
 use crate::robot::RobotControl;
 use crate::state::{Action, State};
 
@@ -52,10 +52,14 @@ fn a_published_method_with_the_left_hand_is_refused_with_the_reason() {
     let gate = |state: &mut State| {
         let view = state.view(crate::Skipped::default(), 0, std::time::Instant::now());
         assert_eq!((view.grasp.hands.len(), view.grasp.hand), (3, HandChoice::Left));
-        view.grasp.gates.iter().find(|gate| gate.name == "Method").expect("it is looked at").clone()
+        view.grasp.gates.iter().find(|gate| gate.of == Need::Method).expect("it is looked at").clone()
     };
     state.apply(Command::Grasp(GraspCommand::Arm(HandChoice::Left)));
-    assert!(!gate(&mut state).text.contains("right hand only"));
+    let allowed = gate(&mut state);
+    assert!(!allowed.text.contains("right hand only"));
+    // It goes by named effects, of which there are none.
+    assert_eq!(allowed.state, GateState::Doubtful);
+    assert!(allowed.text.contains("No effect was found and added yet"), "{}", allowed.text);
     state.apply(Command::Grasp(GraspCommand::Method(Method::M4)));
     let refused = gate(&mut state);
     assert_eq!(refused.state, GateState::Shut);
@@ -68,6 +72,6 @@ fn a_method_that_lacks_a_model_can_be_chosen_and_says_what_it_lacks() {
     let mut state = State::new(folder.path());
     state.apply(Command::Grasp(GraspCommand::Method(Method::M3)));
     let view = state.view(crate::Skipped::default(), 0, std::time::Instant::now());
-    let gate = view.grasp.gates.iter().find(|gate| gate.name == "Method").expect("it is looked at");
+    let gate = view.grasp.gates.iter().find(|gate| gate.of == Need::Method).expect("it is looked at");
     assert!(gate.text.contains("M3 needs M3 trained from touches"), "{}", gate.text);
 }

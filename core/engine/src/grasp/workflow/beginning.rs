@@ -11,6 +11,7 @@ use crate::grasp::progress::Progress;
 use crate::grasp::refusal::Refusal;
 use crate::grasp::steps::HandWork;
 use crate::grasp::stepwise::StopAfterEach;
+use crate::grasp::view::Need;
 use crate::grasp::work::{Context, GraspWork};
 use crate::ground::jobs::JobId;
 use crate::robot::{Leader, Reins, RobotControl};
@@ -26,10 +27,9 @@ impl GraspWorkflow {
         let choice = if matches!(what, What::Hand(_)) { self.hand().into() } else { self.choice };
         let needed = self.gates(around, choice);
         // A step of the hand needs neither eyes nor a method.
-        let of_arm = ["Robot", "STOP", "Arm"];
         let needed: Vec<_> = needed
             .into_iter()
-            .filter(|gate| !matches!(what, What::Hand(_)) || of_arm.contains(&gate.name))
+            .filter(|gate| !matches!(what, What::Hand(_)) || Need::OF_A_HAND.contains(&gate.of))
             .collect();
         if let Some(gate) = shut(&needed) {
             return Err(Refusal::Shut(gate.text.clone()));

@@ -30,6 +30,8 @@ pub const MISSES: usize = 5;
 const PACE_OF: usize = 15;
 /// A touch that took so many times as long as the median was one with a pause before it.
 const PAUSE: f64 = 4.0;
+/// At most so much of a touch counts as done before it is.
+const MOST_TAKEN: f64 = 0.9;
 
 /// What a run does.
 #[derive(Clone, Debug, PartialEq)]
@@ -263,7 +265,8 @@ impl Run {
     }
 
     /// Time that the rest takes at the pace so far; before there is one, as estimated. `None` where no touch is left.
-    pub fn remaining(&self) -> Option<Duration> {
+    /// What the touch under way has taken by now is taken from it, so that it runs while the arm does.
+    pub fn remaining(&self, now: Instant) -> Option<Duration> {
         if self.left() == 0 {
             return None;
         }
@@ -278,7 +281,11 @@ impl Run {
             gaps.iter().map(Duration::as_secs_f64).filter(|gap_s| *gap_s < PAUSE * median_s).collect();
         let each_s = of_pace.iter().sum::<f64>() / of_pace.len().max(1) as f64;
         let each_s = if of_pace.is_empty() { median_s } else { each_s };
-        Duration::try_from_secs_f64(each_s * self.left() as f64).ok()
+        // Of a touch that takes longer than they do at a time a part is left until it is done.
+        let under_way_s =
+            newest.last().map_or(0.0, |last| now.saturating_duration_since(*last).as_secs_f64());
+        let taken_s = under_way_s.min(MOST_TAKEN * each_s);
+        Duration::try_from_secs_f64(each_s * self.left() as f64 - taken_s).ok()
     }
 
     /// Grows with every change of what is on disk.

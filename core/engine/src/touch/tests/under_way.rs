@@ -266,4 +266,10 @@ fn the_time_left_follows_the_pace() {
     // A short hold belongs to the pace: 9, 9 and 18 s. An hour's pause does not.
     assert_eq!(next(&mut desk, 9), Some(4 * 12));
     assert_eq!(next(&mut desk, 3600), Some(3 * 12));
+    // It runs while a touch is made, and stands still with one that takes much longer.
+    desk.wait(Duration::from_secs(5));
+    assert_eq!(desk.view().remaining.map(|left| left.as_secs()), Some(3 * 12 - 5));
+    desk.wait(Duration::from_secs(3600));
+    let left = desk.view().remaining.expect("touches are left");
+    assert!((24.0..26.0).contains(&left.as_secs_f64()), "{left:?}");
 }

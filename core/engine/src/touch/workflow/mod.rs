@@ -184,8 +184,8 @@ impl Workflow for TouchWorkflow {
         Self { folder: folder.to_owned(), ..Self::default() }
     }
 
-    fn view(&mut self, around: &TouchAround, _: &Moment) -> Arc<TouchView> {
-        Arc::new(self.shown(around))
+    fn view(&mut self, around: &TouchAround, moment: &Moment) -> Arc<TouchView> {
+        Arc::new(self.shown(around, moment.now))
     }
 
     fn restore(&mut self, around: &TouchAround, context: &mut Context<'_>) {
