@@ -263,8 +263,9 @@ fn speeds(ui: &mut Ui, speed: &mut JogSpeed, wide: bool) {
     choice(ui, "Jog speed", speed, &options);
 }
 
+/// A press of what senses clicks alone is over once it is too long for a click, or has moved: these are held.
 fn sense(usable: bool) -> Sense {
-    if usable { Sense::click() } else { Sense::hover() }
+    if usable { Sense::click_and_drag() } else { Sense::hover() }
 }
 
 fn interact(ui: &Ui, rect: Rect, base: Id, direction: &Direction, usable: bool) -> Response {

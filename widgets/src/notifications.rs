@@ -13,6 +13,10 @@ use crate::theme::{self, Tokens, space};
 const MOST_KEPT: usize = 200;
 const MOST_TOASTS: usize = 4;
 const WIDTH: f32 = 340.0;
+/// Of a message that is no wider than this the buttons stand below it.
+const NARROW: f32 = 300.0;
+const CLOSE: f32 = 64.0;
+const SIDES: f32 = 24.0;
 /// Of a message that passes by.
 const MOST_LETTERS: usize = 220;
 
@@ -165,15 +169,17 @@ impl Notifications {
     }
 
     /// Draws the messages on screen, stacked upward from the bottom right; `margin` keeps them
-    /// off the window's bottom line. Returns the file that is to be opened.
-    pub fn show_toasts(&mut self, ctx: &Context, margin: Vec2) -> Option<PathBuf> {
+    /// off the window's bottom line; `room`: how wide they may be, pt, where something there spares that much. Returns the
+    /// file that is to be opened.
+    pub fn show_toasts(&mut self, ctx: &Context, margin: Vec2, room: Option<f32>) -> Option<PathBuf> {
+        let width = room.map_or(WIDTH, |room| (room - SIDES).clamp(160.0, WIDTH));
         let now = Instant::now();
         let shown: Vec<Notification> = self.on_screen(now).cloned().collect();
         let (mut dismissed, mut opened) = (Vec::new(), None);
         let area = Area::new(Id::unique("notifications")).order(Order::Foreground);
         area.anchor(Align2::RIGHT_BOTTOM, -margin).interactable(!shown.is_empty()).show(ctx, |ui| {
             for notification in &shown {
-                let asked = toast(ui, notification);
+                let asked = toast(ui, notification, width);
                 if asked.dismissed {
                     dismissed.push(notification.number);
                 }
@@ -232,7 +238,7 @@ struct ToastAsked {
     opened: bool,
 }
 
-fn toast(ui: &mut Ui, notification: &Notification) -> ToastAsked {
+fn toast(ui: &mut Ui, notification: &Notification, width: f32) -> ToastAsked {
     let tokens = theme::tokens(ui);
     let frame = Frame::new()
         .fill(tokens.raised)
@@ -240,23 +246,33 @@ fn toast(ui: &mut Ui, notification: &Notification) -> ToastAsked {
         .inner_margin(Margin::symmetric(12, 10))
         .shadow(ui.visuals().popup_shadow);
     let inner = frame.show(ui, |ui| {
-        ui.set_width(WIDTH);
-        ui.horizontal_top(|ui| {
+        ui.set_width(width);
+        let is_narrow = width < NARROW;
+        let asked = |ui: &mut Ui, pressed: bool| {
+            let dismissed = ui.add(egui::Button::new(theme::small(ui, "Dismiss")).frame(false)).clicked();
+            let opened = notification.file.is_some() && ui.button("Open").clicked();
+            ToastAsked { dismissed: dismissed || pressed, opened }
+        };
+        let said = ui.horizontal_top(|ui| {
             severity_sign(ui, notification.severity);
-            let close = 64.0;
             let words = RichText::new(shortened(notification.words())).color(tokens.text_strong);
             let words = egui::Label::new(words).wrap().selectable(false).sense(egui::Sense::click());
             // What it covers is one press away, wherever that goes.
-            let size = vec2(WIDTH - 30.0 - close - space::S, 0.0);
+            let beside = if is_narrow { 0.0 } else { CLOSE };
+            let size = vec2(width - 30.0 - beside - space::S, 0.0);
             let pressed = ui.allocate_ui(size, |ui| ui.add(words).clicked()).inner;
-            ui.with_layout(egui::Layout::top_down(egui::Align::Max), |ui| {
-                let dismissed = ui.add(egui::Button::new(theme::small(ui, "Dismiss")).frame(false)).clicked();
-                let opened = notification.file.is_some() && ui.button("Open").clicked();
-                ToastAsked { dismissed: dismissed || pressed, opened }
-            })
-            .inner
+            match is_narrow {
+                true => (pressed, None),
+                false => {
+                    let layout = egui::Layout::top_down(egui::Align::Max);
+                    (pressed, Some(ui.with_layout(layout, |ui| asked(ui, pressed)).inner))
+                }
+            }
+        });
+        let (pressed, beside) = said.inner;
+        beside.unwrap_or_else(|| {
+            ui.with_layout(egui::Layout::top_down(egui::Align::Max), |ui| asked(ui, pressed)).inner
         })
-        .inner
     });
     ui.add_space(space::S);
     inner.inner

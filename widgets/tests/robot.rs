@@ -283,6 +283,33 @@ fn shift_and_a_held_direction_move_and_letting_go_of_either_stops() {
     assert_eq!(harness.state().intent, None, "the direction was released");
 }
 
+/// Longer than any click, and with a hand that is not quite still.
+#[test]
+fn what_is_held_for_long_moves_for_as_long() {
+    let mut harness = jog();
+    shift(&harness, true);
+    let at = hold(&mut harness, "Forward");
+    for step in 0..20 {
+        harness.hover_at(at + vec2(f32::from(step % 3_i16) * 4.0, 0.0));
+        harness.run_steps(1);
+        assert!(harness.state().intent.is_some(), "step {step}");
+    }
+    harness.drop_at(at);
+    harness.run_steps(1);
+    assert_eq!(harness.state().intent, None);
+    // And so it is with the button that enables.
+    shift(&harness, false);
+    let at = hold(&mut harness, "Hold to move");
+    harness.key_down(Key::PageUp);
+    for step in 0..20 {
+        harness.run_steps(1);
+        assert!(harness.state().intent.is_some(), "step {step}");
+    }
+    harness.drop_at(at);
+    harness.run_steps(1);
+    assert_eq!(harness.state().intent, None);
+}
+
 #[test]
 fn the_enable_button_and_keys_move_at_the_chosen_speed() {
     let mut harness = jog();

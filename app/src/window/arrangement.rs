@@ -126,13 +126,12 @@ fn handeye(tiles: &mut Tiles<Pane>) -> TileId {
 fn grasp(tiles: &mut Tiles<Pane>) -> TileId {
     let left = tabs(tiles, &[Pane::LeftEye]);
     let right = tabs(tiles, &[Pane::RightEye]);
-    let scene = tabs(tiles, &[Pane::Scene, Pane::Twin, Pane::GraspExperiment]);
+    let scene = tabs(tiles, &[Pane::Scene, Pane::Twin, Pane::GraspAttempts, Pane::GraspExperiment]);
+    // Steps, hand and result are as tall as a small window.
     let run = tabs(tiles, &[Pane::GraspRun]);
-    let attempts = tabs(tiles, &[Pane::GraspAttempts]);
     let eyes = row(tiles, &[(left, 1.0), (right, 1.0)]);
     let seen = column(tiles, &[(eyes, 0.6), (scene, 1.0)]);
-    let work = column(tiles, &[(run, 4.8), (attempts, 1.0)]);
-    row(tiles, &[(seen, 1.15), (work, 1.0)])
+    row(tiles, &[(seen, 1.15), (run, 1.0)])
 }
 
 fn drift(tiles: &mut Tiles<Pane>) -> TileId {

@@ -143,7 +143,8 @@ impl PlumblineWindow {
         }
         // They would lie in the picture of a tile.
         if !self.taking.waits_for_picture() {
-            self.notices.show_new(ctx);
+            let beside = self.settings.inspector_open.then_some(self.inspector_width);
+            self.notices.show_new(ctx, beside);
         }
         self.notices.show_history(ctx, escape_pressed, outbox);
         // Esc closes what lies on top of help first.

@@ -35,7 +35,7 @@ pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbo
     let panel = Panel::right("inspector").frame(frame).default_size(usual).size_range(200.0..=420.0);
     let (view, screen) = (std::sync::Arc::clone(&window.view), window.settings.screen);
     let (state, undo_rest) = (&mut window.panels, &mut window.undo_rest);
-    panel.show_separator_line(false).show(ui, |ui| {
+    let shown = panel.show_separator_line(false).show(ui, |ui| {
         undo::show(&view, screen, undo_rest, ui, outbox);
         // Beside the number and the name of a slider: more would make the whole inspector wider, for good.
         ui.spacing_mut().slider_width =
@@ -59,6 +59,7 @@ pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbo
             Screen::Robot => show_robot_inspector(ui, &view, &mut state.robot, outbox),
         });
     });
+    window.inspector_width = shown.response.rect.width();
 }
 
 fn live(ui: &mut Ui, view: &View, state: &mut PanelState, outbox: &mut Outbox) {

@@ -141,6 +141,8 @@ pub struct PlumblineWindow {
     palette: Palette,
     manual: Manual,
     notices: NoticeList,
+    /// As it was drawn last, pt.
+    inspector_width: f32,
     log: LogPanel,
     frame_times: FrameTimes,
     processor_time_before: Option<Duration>,
@@ -201,6 +203,7 @@ impl PlumblineWindow {
             palette: Palette::default(),
             manual: Manual::default(),
             notices: NoticeList::default(),
+            inspector_width: 248.0,
             log: LogPanel::new(options.log),
             frame_times: FrameTimes::default(),
             processor_time_before: None,

@@ -120,11 +120,13 @@ impl NoticeList {
         self.unread = 0;
     }
 
-    pub(super) fn show_new(&mut self, ctx: &Context) {
-        // What was just put in use may be taken back at once: they pass by above Undo.
-        let above = vec2(space::M, 68.0 + undo::HEIGHT);
+    /// `beside`: how wide the inspector is, where it is open.
+    pub(super) fn show_new(&mut self, ctx: &Context, beside: Option<f32>) {
+        // What was just put in use may be taken back at once: they pass by above Undo, over nothing but what describes.
+        let above = vec2(space::S, 68.0 + undo::HEIGHT);
+        let room = beside.map(|width| width - 2.0 * space::S);
         if !self.history_open
-            && let Some(file) = self.shown.show_toasts(ctx, above)
+            && let Some(file) = self.shown.show_toasts(ctx, above, room)
         {
             open_file(file);
         }

@@ -2,9 +2,9 @@
 
 use std::borrow::Cow;
 
-use egui::{Key, Modifiers, ScrollArea, TextEdit, Ui};
+use egui::{Key, Modifiers, RichText, ScrollArea, TextEdit, Ui};
 use plumbline_engine::View;
-use plumbline_widgets::theme::{self, space};
+use plumbline_widgets::theme::{self, Role, space};
 
 use super::sheet::sheet;
 use crate::operator::{Action, actions, shortcut_text};
@@ -51,11 +51,7 @@ impl Palette {
             )
         });
         let edit = TextEdit::singleline(&mut self.typed)
-            .hint_text(if super::status_line::moves(view) {
-                "Type what you want to do (space stops what moves)"
-            } else {
-                "Type what you want to do"
-            })
+            .hint_text("Type what you want to do")
             .desired_width(f32::INFINITY);
         let edit = ui.add(edit);
         edit.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Search commands"));
@@ -64,6 +60,14 @@ impl Palette {
         }
         if edit.changed() {
             self.chosen = 0;
+        }
+        // Also between two words that are typed here.
+        if super::status_line::moves(view) {
+            let warning = Role::Warning.color(theme::tokens(ui));
+            ui.label(
+                RichText::new("The robot moves: space stops it, here, too. One word finds it.")
+                    .color(warning),
+            );
         }
         let found = matching(&self.typed);
         if down {

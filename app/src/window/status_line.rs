@@ -12,7 +12,7 @@ use plumbline_widgets::theme::space;
 use super::PlumblineWindow;
 use crate::operator::guidance::{Guidance, failed_inside, guidance};
 use crate::operator::{
-    Action, Course, GraspAction, Outbox, Screen, TouchAction, course, led_by, shortcut_text,
+    Action, Course, GraspAction, Outbox, RobotAction, Screen, TouchAction, course, led_by, shortcut_text,
 };
 
 const HEIGHT: f32 = 52.0;
@@ -199,6 +199,10 @@ fn answer(asked: Option<ProgressAction>, outbox: &mut Outbox) {
 /// way to hold what moves. Where the operator looks elsewhere, that screen says its own.
 fn of_course(view: &View, screen: Screen, course: Course) -> Guidance {
     let own = guidance(view, screen);
+    // A move that is shown is gone from where it is shown, also on the way.
+    if matches!(own.next.as_ref().map(|next| next.action), Some(Action::Robot(RobotAction::Move))) {
+        return own;
+    }
     let of_eyes = course.screen.is_eyes() && screen.is_eyes();
     let is_elsewhere = !of_eyes && screen != course.screen && screen != Screen::Commission;
     // What would only lead on gives way to what leads.

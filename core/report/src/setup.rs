@@ -8,6 +8,8 @@ use crate::{About, ReportError, html, pdf};
 const ROW: f64 = 13.5;
 /// So many lines say what speaks against something in use.
 const MOST_LINES: usize = 3;
+/// And so many at most what it is.
+const MOST_OF_TITLE: usize = 8;
 /// Left edges of the columns behind the first one; the last two end there.
 const COLUMNS: [f64; 4] = [118.0, 206.0, 496.0, WIDTH - MARGIN];
 
@@ -97,7 +99,13 @@ fn draw(setup: &Setup) -> Drawing {
     y = heading(&mut drawing, y + 26.0, "In use", ["since", "error"]);
     for now in &setup.in_use {
         y += ROW;
-        cells(&mut drawing, y, [&now.subject, "", &now.title, &now.since, &now.error], true);
+        // All of what is in use is told: a model may have many effects.
+        y = cells(
+            &mut drawing,
+            y,
+            [&now.subject, "", &now.title, &now.since, &now.error],
+            (true, MOST_OF_TITLE),
+        );
         if !now.against.is_empty() {
             let (style, width) = (Style::SMALL.color(ink::WARNING), COLUMNS[3] - COLUMNS[0]);
             let first = y + style.leading();
@@ -114,7 +122,7 @@ fn draw(setup: &Setup) -> Drawing {
             &mut drawing,
             y,
             [&step.at, &step.subject, &step.title, &step.before, &step.after],
-            step.is_change,
+            (step.is_change, 1),
         );
     }
     if shown < setup.steps.len() {
@@ -137,16 +145,23 @@ fn heading(drawing: &mut Drawing, y: f64, title: &str, last: [&str; 2]) -> f64 {
     y + 3.0
 }
 
-fn cells(drawing: &mut Drawing, y: f64, [first, second, title, before, after]: [&str; 5], strong: bool) {
+/// The base line of its last line.
+fn cells(
+    drawing: &mut Drawing,
+    y: f64,
+    [first, second, title, before, after]: [&str; 5],
+    (strong, most): (bool, usize),
+) -> f64 {
     let style = if strong { Style::BODY } else { Style::BODY.color(ink::WEAK) };
     drawing.text([MARGIN, y], first, style);
     drawing.text([COLUMNS[0], y], second, style);
     let from = if second.is_empty() { COLUMNS[0] } else { COLUMNS[1] };
     let before_width = crate::font::width(before, style.size, style.weight);
     let width = COLUMNS[2] - before_width - 10.0 - from;
-    drawing.paragraph([from, y], width, title, style, 1);
+    let below = drawing.paragraph([from, y], width, title, style, most) - style.leading();
     drawing.anchored([COLUMNS[2], y], before, style, Anchor::End);
     drawing.anchored([COLUMNS[3], y], after, style, Anchor::End);
+    below.max(y)
 }
 
 #[cfg(test)]
@@ -191,6 +206,15 @@ mod tests {
         assert!(page.contains("5.88 mm") && page.contains("0.93 mm"));
         assert!(page.contains("does not hold any more"), "what speaks against it stands beside it");
         assert!(setup_pdf(&sample(5)).expect("written").starts_with(b"%PDF"));
+    }
+
+    #[test]
+    fn a_model_of_many_effects_is_told_to_the_end() {
+        let mut setup = sample(0);
+        setup.in_use[0].title =
+            (1..=8).map(|k| format!("Right joint {k}: zero position off")).collect::<Vec<_>>().join("; ");
+        let page = setup_html(&setup);
+        assert!(page.contains("joint 8") && !page.contains('…'), "{page}");
     }
 
     #[test]

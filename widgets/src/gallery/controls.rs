@@ -175,5 +175,5 @@ pub(super) fn notifications(ui: &mut Ui, state: &mut GalleryState) {
     ui.label(theme::weak(ui, format!("History, and toasts at the bottom right ({count} pairs loaded).")));
     ui.allocate_ui(vec2(ui.available_width(), 200.0), |ui| state.notifications.show_history(ui));
     let ctx = ui.ctx().clone();
-    state.notifications.show_toasts(&ctx, vec2(space::M, space::M));
+    state.notifications.show_toasts(&ctx, vec2(space::M, space::M), None);
 }

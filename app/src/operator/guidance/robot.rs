@@ -119,8 +119,10 @@ pub(super) fn robot(view: &View) -> Guidance {
     }
 }
 
-fn shown_move(robot: &RobotView) -> Option<Guidance> {
-    robot.preview.as_ref().map(shown)
+/// What is shown and would be gone.
+pub(super) fn shown_move(robot: &RobotView) -> Option<Guidance> {
+    let stands = robot.connection.is_connected() && !matches!(robot.motion, MotionState::Moving { .. });
+    robot.preview.as_ref().filter(|_| stands).map(shown)
 }
 
 /// What the move does; one that passes close by something is no matter of course.

@@ -25,7 +25,13 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             0 => String::new(),
             n => format!(", {n} of them by fingers and eyes alone"),
         };
-        ui.label(theme::weak(ui, format!("{held} of {} held{by_whom}", attempts.len())));
+        let broken_off = attempts.iter().filter(|attempt| attempt.is_broken_off()).count();
+        let ended = match broken_off {
+            0 => String::new(),
+            n => format!("; {n} more broken off"),
+        };
+        let all = attempts.len() - broken_off;
+        ui.label(theme::weak(ui, format!("{held} of {all} held{by_whom}{ended}")));
         ui.add_space(space::XS);
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 0.0;

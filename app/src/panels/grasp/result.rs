@@ -1,7 +1,7 @@
 //! What became of the attempt, large and plain, and what the operator saw of it.
 
 use egui::{RichText, TextStyle, Ui};
-use plumbline_engine::view::{GraspOutcome, GraspPhase, GraspRun, SinceHeld};
+use plumbline_engine::view::{GraspOutcome, GraspPhase, GraspRun, SinceHeld, is_halted};
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, Role, space};
 
@@ -30,6 +30,9 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, run: &GraspRun) {
         (Some(true), _) => (Role::Accepted, format!("The {object} was held, as you said."), None),
         (Some(false), _) => (Role::Warning, format!("The {object} was not held, as you said."), None),
         (None, GraspOutcome::Success) => (Role::Accepted, held_now(run), None),
+        (None, GraspOutcome::Failed { why, .. }) if is_halted(outcome) => {
+            (Role::Warning, "Broken off.".to_owned(), Some(why))
+        }
         (None, GraspOutcome::Failed { why, .. }) => (Role::Warning, "Not held.".to_owned(), Some(why)),
         (None, GraspOutcome::Refused { why }) => (Role::Warning, "Not grasped.".to_owned(), Some(why)),
     };

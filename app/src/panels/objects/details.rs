@@ -9,7 +9,7 @@ use plumbline_widgets::key_value::{KeyValue, big_figure, key_value_grid};
 use plumbline_widgets::theme::{self, Role, space};
 
 use super::drawing::DOUBT;
-use super::state::ObjectsPanels;
+use super::state::{ObjectsPanels, in_hand};
 use crate::panels::parts::warning;
 
 /// Draws it; a hint while nothing is looked at.
@@ -42,7 +42,13 @@ pub fn show(ui: &mut Ui, view: &View, panels: &mut ObjectsPanels) {
             }
         }
     }
-    for doubt in object.leak.iter().chain(&object.doubts) {
+    let held = in_hand(view, object);
+    let doubts: Vec<&String> = object.leak.iter().chain(&object.doubts).chain(&held).collect();
+    if !doubts.is_empty() && object.best_place().is_ok() {
+        ui.add_space(space::XS);
+        ui.label(theme::weak(ui, "Not in the ±:"));
+    }
+    for doubt in doubts {
         ui.add_space(space::XS);
         ui.label(RichText::new(doubt).color(DOUBT.color(theme::tokens(ui))));
     }

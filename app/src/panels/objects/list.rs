@@ -10,7 +10,7 @@ use plumbline_widgets::theme::{self, space};
 
 use super::drawing::{DOUBT, color};
 use super::order::in_order;
-use super::state::{ObjectsPanels, objects};
+use super::state::{ObjectsPanels, in_hand, objects};
 
 const ROW_HEIGHT: f32 = 38.0;
 const SWATCH: f32 = 10.0;
@@ -24,12 +24,12 @@ pub fn show(ui: &mut Ui, view: &View, panels: &mut ObjectsPanels) {
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
         for object in in_order(&panels.listed, objects(view)) {
-            row(ui, object, panels);
+            row(ui, view, object, panels);
         }
     });
 }
 
-fn row(ui: &mut Ui, object: &ObjectView, panels: &mut ObjectsPanels) {
+fn row(ui: &mut Ui, view: &View, object: &ObjectView, panels: &mut ObjectsPanels) {
     let tokens = theme::tokens(ui);
     let width = ui.available_width();
     let (rect, response) = ui.allocate_exact_size(vec2(width, ROW_HEIGHT), Sense::click());
@@ -39,7 +39,7 @@ fn row(ui: &mut Ui, object: &ObjectView, panels: &mut ObjectsPanels) {
             egui::Role::ListBoxOption,
             true,
             chosen,
-            format!("{}, {}", class_words(&object.name), whereabouts(object)),
+            format!("{}, {}", class_words(&object.name), whereabouts(view, object)),
         )
     });
     if response.hovered() {
@@ -63,7 +63,7 @@ fn row(ui: &mut Ui, object: &ObjectView, panels: &mut ObjectsPanels) {
     plumbline_widgets::class_swatch(ui.painter(), swatch, color(object), tokens.text_weak);
     let text = left + SWATCH + space::S;
     let painter = ui.painter().with_clip_rect(rect);
-    let doubtful = object.leak.is_some() || !object.doubts.is_empty();
+    let doubtful = is_doubtful(view, object);
     let name = class_words(&object.name);
     let name = if doubtful { format!("{name}  !") } else { name.to_owned() };
     painter.text(pos2(text, rect.top() + 2.0), Align2::LEFT_TOP, name, body.clone(), tokens.text_strong);
@@ -77,7 +77,11 @@ fn row(ui: &mut Ui, object: &ObjectView, panels: &mut ObjectsPanels) {
     );
     let ink = if object.place.is_ok() && !doubtful { tokens.text } else { tokens.text_weak };
     let ink = if doubtful { DOUBT.color(tokens) } else { ink };
-    painter.text(pos2(text, rect.bottom() - 3.0), Align2::LEFT_BOTTOM, whereabouts(object), small, ink);
+    painter.text(pos2(text, rect.bottom() - 3.0), Align2::LEFT_BOTTOM, whereabouts(view, object), small, ink);
+}
+
+fn is_doubtful(view: &View, object: &ObjectView) -> bool {
+    object.leak.is_some() || !object.doubts.is_empty() || in_hand(view, object).is_some()
 }
 
 /// "L 0.91  R 0.88".
@@ -90,13 +94,18 @@ fn confidences(object: &ObjectView) -> String {
 }
 
 /// Where it is, on one line.
-fn whereabouts(object: &ObjectView) -> String {
+fn whereabouts(view: &View, object: &ObjectView) -> String {
     match object.best_place() {
         Ok(place) => {
             let at = place.point_in_robot.coords;
             let number = |m: f64| format::fixed(Quantity::Length.on_screen(m), 0);
             let worst_m = place.sigma_m.iter().copied().fold(0.0, f64::max);
-            format!("{}, {}, {} ± {} mm", number(at.x), number(at.y), number(at.z), number(worst_m))
+            let at = format!("{}, {}, {}", number(at.x), number(at.y), number(at.z));
+            // What speaks against the place is in no ±.
+            match is_doubtful(view, object) {
+                true => format!("{at} mm, doubtful"),
+                false => format!("{at} ± {} mm", number(worst_m)),
+            }
         }
         Err(_) => match (object.left.is_some(), object.right.is_some()) {
             (true, false) => "only the left eye: no place".to_owned(),

@@ -110,3 +110,12 @@ impl ObjectsPanels {
 pub fn objects(view: &View) -> &[ObjectView] {
     view.detect.found.as_ref().map_or(&[], |found| &found.objects)
 }
+
+/// Why the place of something that a hand holds is doubtful; `None`: none does, as far as that is known.
+pub fn in_hand(view: &View, object: &ObjectView) -> Option<String> {
+    let held = view.grasp.held.as_ref().filter(|held| held.object.eq_ignore_ascii_case(&object.name))?;
+    Some(format!(
+        "The {} hand holds it and covers a part of it: where its middle is the eyes cannot tell.",
+        held.hand.name()
+    ))
+}

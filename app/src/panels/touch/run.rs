@@ -202,6 +202,9 @@ fn proven(ui: &mut Ui, touch: &TouchView) {
     }
 }
 
+/// Of fewer repeats the gap, too, makes no noise.
+const FEW_REPEATS: usize = 10;
+
 fn figures(ui: &mut Ui, found: &TouchFigures) {
     let [low, high] = found.mean_interval_m;
     let [right, near] = found.bias_m;
@@ -226,9 +229,14 @@ fn figures(ui: &mut Ui, found: &TouchFigures) {
         let along = if near < 0.0 { "away from" } else { "toward" };
         big_figure(ui, &format!("bias: to the {aside}, {along} the robot"), &bias, Role::Ink);
         let noise = found.noise_m.map_or("—".to_owned(), format::mm);
-        let label =
-            if found.noise_m.is_some() { "noise floor of repeats" } else { "noise floor: no repeats" };
-        big_figure(ui, label, &noise, Role::NoiseFloor);
+        let label = match found.noise_m {
+            None => "noise floor: no repeats".to_owned(),
+            Some(_) if found.repeats < FEW_REPEATS => {
+                format!("rough noise, of {}", format::count(found.repeats, "repeat"))
+            }
+            Some(_) => "noise floor of repeats".to_owned(),
+        };
+        big_figure(ui, &label, &noise, Role::NoiseFloor);
     });
 }
 

@@ -51,9 +51,14 @@ fn chips(ui: &mut Ui, cx: &mut PanelContext<'_>, toys: &[ToyView]) {
             let chip = ui.add(egui::Button::selectable(chosen, text).sense(Sense::click()));
             chip.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, chosen, &toy.name));
             let at = chip.rect.left_center() + vec2(12.0, 0.0);
+            // A light one is seen on a light ground, too.
+            let edge = egui::Stroke::new(1.0, theme::tokens(ui).text_weak);
             match toy.place {
-                Some(_) => ui.painter().circle_filled(at, 5.0, color(toy)),
-                None => ui.painter().circle_stroke(at, 4.5, egui::Stroke::new(1.5, color(toy))),
+                Some(_) => ui.painter().circle(at, 5.0, color(toy), edge),
+                None => {
+                    ui.painter().circle_stroke(at, 5.0, edge);
+                    ui.painter().circle_stroke(at, 3.5, egui::Stroke::new(1.5, color(toy)))
+                }
             };
             if chip.on_hover_text(where_to).clicked() {
                 cx.state.twin.chosen_toy = (!chosen).then_some(i);

@@ -13,6 +13,9 @@ const TURNS_RAD_S: f64 = 0.1;
 /// The arm and its fingers stand, where they were sent: some degrees of droop and play are as they should be.
 pub(super) fn rest(around: &GraspAround, arm: &str) -> Gate {
     let robot = &around.robot;
+    if robot.rests_on_the_way {
+        return open(Need::Rest, "The arm holds on its way.");
+    }
     if matches!(robot.motion, MotionState::Moving { .. }) {
         // A grasp that is under way, or a move: what turns now turns on purpose, and follows a little behind.
         return doubtful(Need::Rest, "The arm is on its way.");

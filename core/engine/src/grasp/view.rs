@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use jiff::Timestamp;
+use plumbline_grasp::Failure;
 pub use plumbline_grasp::record::{Iteration as GraspIteration, Outcome as GraspOutcome, Step as GraspStep};
 pub use plumbline_grasp::see::Seen as SeenThing;
 pub use plumbline_grasp::{Hand as GraspHand, HandChoice, Method as GraspMethod};
@@ -342,4 +343,19 @@ impl AttemptView {
     pub fn is_success(&self) -> bool {
         self.told.unwrap_or(self.outcome == Some(GraspOutcome::Success) && self.slipped_after.is_none())
     }
+
+    /// Whether it came to no end of its own: the operator, STOP, the robot or a failure of the program ended it, or
+    /// nothing was risked. Nothing is told by it.
+    pub fn is_broken_off(&self) -> bool {
+        let halted = match &self.outcome {
+            Some(outcome) => is_halted(outcome) || matches!(outcome, GraspOutcome::Refused { .. }),
+            None => true,
+        };
+        self.told.is_none() && halted
+    }
+}
+
+/// Whether an attempt was ended before anything could come of it.
+pub fn is_halted(outcome: &GraspOutcome) -> bool {
+    matches!(outcome, GraspOutcome::Failed { failure: Failure::Halted, .. })
 }

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use plumbline_effects::RigModel;
 
 use crate::grasp::GraspAround;
+use crate::grasp::view::InHand;
 use crate::twin::view::TwinView;
 
 /// What the workflow can see of the rest.
@@ -20,6 +21,8 @@ pub struct HandEyeAround {
     pub touches: Option<PathBuf>,
     /// Where sessions of this lab are looked for.
     pub sessions: PathBuf,
+    /// What is in a hand, which would be opened.
+    pub held: Option<InHand>,
     /// The twin, where its arm is connected.
     pub twin: Option<Arc<TwinView>>,
 }

@@ -15,7 +15,7 @@ use super::view::HandEyeView;
 use super::work::{Context, HandEyeResult};
 use super::*;
 use crate::grasp::GraspAround;
-use crate::grasp::view::{GateState, Need};
+use crate::grasp::view::{GateState, GraspHand, InHand, Need};
 use crate::ground::jobs::JobId;
 use crate::ground::jobs::list::JobList;
 use crate::ground::notice::Notices;
@@ -125,6 +125,7 @@ fn around(rig: &Arc<Rig>, added: &Arc<RigModel>) -> HandEyeAround {
         is_changing: false,
         touches: None,
         sessions: "lab/sessions".into(),
+        held: None,
         twin: None,
     }
 }
@@ -176,6 +177,18 @@ fn what_lacks_is_said_before_anything_moves_and_nothing_is_accepted_that_was_not
     assert!(desk.tell(HandEyeCommand::Accept).contains("is being changed just now"));
     assert!(desk.tell(HandEyeCommand::End).contains("Nothing is under way"));
     assert!(!desk.view().is_looking && desk.room.take_accepted().is_none());
+}
+
+/// Each hand is opened to be looked at.
+#[test]
+fn what_is_in_a_hand_has_to_leave_it_first() {
+    let (rig, folder) = (rig(), tempfile::tempdir().expect("a folder for the test"));
+    let mut desk = Desk::new(&rig, &Arc::new(RigModel::nominal(&rig)), folder.path());
+    let of_hand = |desk: &mut Desk| desk.view().gates.iter().find(|gate| gate.of == Need::Hand).cloned();
+    assert_eq!(of_hand(&mut desk), None);
+    desk.around.held = Some(InHand { object: "Tomato".to_owned(), hand: GraspHand::Right });
+    let said = of_hand(&mut desk).expect("it is looked at");
+    assert!(said.state == GateState::Shut && said.text.contains("tomato is in the right hand"), "{said:?}");
 }
 
 #[test]

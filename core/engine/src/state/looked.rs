@@ -27,6 +27,7 @@ impl Neighbors<HandEyeWorkflow> for State {
             is_changing: gap.is_changing(),
             touches: one.or_else(|| touch.trained_session().map(Path::to_owned)),
             sessions: touch.sessions(),
+            held: self.rooms.grasp.of(world).in_hand(),
             twin: is_twin.then(|| self.twin.clone()),
         }
     }

@@ -85,6 +85,10 @@ fn joints(facts: &Facts, around: &TruthAround) -> Vec<TruthRow> {
             UnitQuaternion::from_scaled_axis(skew_rad) * UnitQuaternion::from_axis_angle(axis, angle_rad);
         let Some(left_rad) = left_rad(joint, &turn, facts) else { continue };
         let Some(servo) = rig.servo_of(*index) else { continue };
+        // Fingers bend around what they hold: that is no zero of theirs.
+        if rig.arms.iter().any(|arm| arm.hand.contains(index)) {
+            continue;
+        }
         let about_rad = left_rad.dot(axis);
         let across = left_rad - axis.into_inner() * about_rad;
         rows.push(row(TruthOf::Zero, &servo.title, None, Some(-about_rad)));

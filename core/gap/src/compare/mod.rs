@@ -216,7 +216,8 @@ fn warn_of_noise(floor: &Floor, warnings: &mut Vec<String>) {
     };
     if let Some(from) = from {
         warnings.push(format!(
-            "there are too few repeats: the noise was {from}. Repeat a few measurements from the same side"
+            "there are too few repeats to take the noise from them: it was {from}. Ten touches of the same few places, each from \
+             the same side, would tell it"
         ));
     }
     for kind in floor.kinds.iter().filter(|kind| kind.what.is_placed()) {

@@ -52,7 +52,8 @@ fn collecting(view: &View, doubt: Option<String>) -> Said {
     }
 }
 
-fn pairs(view: &View) -> usize {
+/// Those that count.
+pub(super) fn pairs(view: &View) -> usize {
     view.eyes.collected.len() - dropped(&view.eyes)
 }
 

@@ -35,7 +35,7 @@ pub(super) fn title(view: &View, step: Option<CommissionStep>) -> String {
 fn far(view: &View, step: CommissionStep) -> Option<String> {
     match step {
         CommissionStep::Eyes => {
-            let pairs = view.eyes.collected.len();
+            let pairs = super::eyes::pairs(view);
             (pairs > 0).then(|| format::count(pairs, "pair"))
         }
         CommissionStep::Mount => {
