@@ -1,7 +1,7 @@
 //! What to do next with the robot and with the mount of its eyes.
 
 use plumbline_engine::view::{
-    CaptureHint, Connection, MotionState, Preview, RobotView, SourceStatus, StepState, TourWaits,
+    CaptureHint, Connection, JointView, MotionState, Preview, RobotView, SourceStatus, StepState, TourWaits,
 };
 use plumbline_engine::{SourceSpec, View};
 use plumbline_widgets::format;
@@ -11,6 +11,9 @@ use super::sentence::{Guidance, say};
 use crate::operator::words::mount;
 use crate::operator::words::robot::{is_close, move_sentence, moved_name, silent_together};
 use crate::operator::{Action, MountAction, RobotAction, Screen};
+
+/// Less than that beyond a limit nobody sees, rad.
+const BEYOND_RAD: f64 = 0.005;
 
 /// What keeps the robot from being moved; `None` when it is connected and stands.
 pub(super) fn trouble(robot: &RobotView) -> Option<Guidance> {
@@ -78,9 +81,26 @@ pub(super) fn to_take_hold_of(robot: &RobotView) -> Option<Guidance> {
 pub(super) fn limp(robot: &RobotView) -> Option<Guidance> {
     let is_limp = robot.connection.is_connected() && robot.motion == MotionState::Limp;
     is_limp.then(|| {
-        say("The joints are limp: they can be turned by hand, and sink. They are held where they stand then.")
+        let held = beyond(robot).unwrap_or_else(|| "They are held where they stand then.".to_owned());
+        say(format!("The joints are limp: they can be turned by hand, and sink. {held}"))
             .warn()
             .then("Hold all joints", Action::Robot(RobotAction::TorqueOn))
+    })
+}
+
+/// Which joints turn when they are taken hold of: no servo holds beyond its limits.
+fn beyond(robot: &RobotView) -> Option<String> {
+    let off = |joint: &JointView| joint.angle_rad.map(|angle_rad| joint.limits.excess_rad(angle_rad));
+    let far = |joint: &&JointView| off(joint).is_some_and(|rad| rad.abs() > BEYOND_RAD);
+    let said: Vec<String> = robot
+        .joints
+        .iter()
+        .filter(far)
+        .filter_map(|joint| Some(format!("{} by {}", joint.title, format::degrees(off(joint)?.abs()))))
+        .collect();
+    let others = "the others are held where they stand";
+    (!said.is_empty()).then(|| {
+        format!("Held, what sank beyond its limit turns back to it ({}); {others}.", said.join(", "))
     })
 }
 

@@ -27,14 +27,16 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         Drawn::of(&shown, corners.unwrap_or_default())
     });
     padded(ui, |ui| {
+        let is_wide = ui.available_width() > LEGEND_WIDTH;
         ui.horizontal_wrapped(|ui| {
             let options = [(Errors::Before, "Before"), (Errors::After, "After"), (Errors::Both, "Both")];
             choice(ui, "Errors of the gap", &mut cx.state.gap.errors, &options);
-            let floor = words::error(&shown.finding.shown, shown.finding.shown.floor);
-            ui.add(
-                egui::Label::new(theme::small(ui, format!("{}: {floor}", words::floor_name(&shown.finding))))
-                    .extend(),
-            );
+            // In a small tile the map needs the line; the tile below says it, too.
+            if is_wide {
+                let floor = words::error(&shown.finding.shown, shown.finding.shown.floor);
+                let said = format!("{}: {floor}", words::floor_name(&shown.finding));
+                ui.add(egui::Label::new(theme::small(ui, said)).extend());
+            }
         });
         ui.add_space(space::XS);
         let errors = cx.state.gap.errors;

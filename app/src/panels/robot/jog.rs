@@ -39,6 +39,7 @@ fn contents(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     if !view.robot.model.is_empty() {
         ui.label(theme::small(ui, format!("Moved by the robot {}.", view.robot.model)));
     }
+    ui.label(theme::small(ui, "The tip goes that way; the hand turns with it as the arm has to."));
     gamepad(ui, cx.state.robot.gamepad.as_ref());
     let by_hand = shown.intent.map(|intent| JogRates {
         velocity_m_s: intent.velocity_m_s.into(),

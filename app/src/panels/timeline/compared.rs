@@ -24,6 +24,13 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     };
     padded(ui, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            if ui.available_width() < NARROW {
+                for entry in [first, second] {
+                    below_each_other(ui, entry);
+                }
+                ui.label(difference(first, second));
+                return;
+            }
             let width = ((ui.available_width() - 64.0 - 2.0 * space::M) * 0.5).max(60.0);
             Grid::new("timeline compared").num_columns(3).spacing([space::M, 4.0]).show(ui, |ui| {
                 let rows: [Row; 5] = [
@@ -48,6 +55,23 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             ui.label(difference(first, second));
         });
     });
+}
+
+/// Side by side a column would be a word wide, pt.
+const NARROW: f32 = 380.0;
+
+/// One of both, all of it in its own lines.
+fn below_each_other(ui: &mut Ui, entry: &TimelineEntry) {
+    ui.label(theme::small(ui, format!("{} · {}", clock(entry.at), entry.subject.name())));
+    ui.add(egui::Label::new(title(entry)).wrap());
+    let errors = errors(entry);
+    if !errors.is_empty() {
+        ui.label(theme::strong(ui, errors));
+    }
+    if !entry.basis.is_empty() {
+        ui.label(theme::small(ui, entry.basis.clone()));
+    }
+    ui.add_space(space::S);
 }
 
 /// What became of the error from the older to the newer.

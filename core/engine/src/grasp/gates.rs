@@ -156,7 +156,7 @@ fn load(around: &GraspAround, arm: &str) -> Gate {
             Need::Load,
             format!("{} pushes against something: move the arm to where nothing is in its way.", joint.title),
         ),
-        None => open(Need::Load, "No joint pushes against anything."),
+        None => open(Need::Load, "No joint of the arm pushes hard against anything."),
     }
 }
 

@@ -34,6 +34,11 @@ impl StatusError {
         self.byte == 0
     }
 
+    /// Whether a goal lies outside of its angle limits, and was not taken (MX-64 manual, "Error": bit 1).
+    pub fn is_outside(self) -> bool {
+        self.byte & 0x02 != 0
+    }
+
     /// Whether the host's bytes arrived broken, so that repeating helps.
     pub fn is_transmission(self) -> bool {
         self.byte & 0x10 != 0

@@ -191,6 +191,16 @@ pub enum Refusal {
         /// Its name.
         name: String,
     },
+    /// It stands far beyond the limits in its servo's memory.
+    #[error(
+        "{name} stands far beyond the limits in the memory of its servo, which takes no goal there: support it, turn it back by hand, then take hold of it (Hold all joints, in Robot)"
+    )]
+    BeyondServo {
+        /// The joint.
+        joint: JointIndex,
+        /// Its name.
+        name: String,
+    },
     /// It shut down after an overload.
     #[error(
         "the servo of {name} shut down after an overload and has no force: support the joint, lighten it, then give it force again (torque on)"

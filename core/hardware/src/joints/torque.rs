@@ -7,7 +7,7 @@ use plumbline_model::robot::servo::FULL;
 use super::exchange::Exchange;
 use super::refusal::Refusal;
 use super::slot::{Bar, Identity, Slot};
-use crate::dynamixel::{Answer, BulkItem, BusError, Item, Register};
+use crate::dynamixel::{Answer, BulkItem, BusError, Item, Register, StatusError, Ticks};
 
 /// How often taking hold is tried; each time from a fresh angle.
 const ATTEMPTS: u32 = 4;
@@ -15,12 +15,22 @@ const ATTEMPTS: u32 = 4;
 /// its own length: a late answer is never taken for one to another question.
 const RETURN_DELAY_BYTES: u16 = 4;
 const MAX_TORQUE_BYTES: u16 = 5;
+/// The two limits of the angle lie side by side; read with what follows.
+const ANGLE_LIMIT_BYTES: u16 = 6;
+/// A joint that sank no farther beyond the limits of its servo is held at the nearer one, ticks (10°).
+const MOST_BEYOND: u16 = 114;
 /// Who may use less than this share of its torque is given what its memory allows when it is taken hold of.
 const FULL_FORCE: f64 = 0.95;
 
 /// Whether it may use less than all its torque.
 fn lacks_force(slot: &Slot) -> bool {
     slot.reading.force.is_some_and(|share| share < FULL_FORCE)
+}
+
+/// It stands where its servo takes no goal.
+fn beyond(slot: &Slot) -> Refusal {
+    let servo = &slot.unit.servo;
+    Refusal::BeyondServo { joint: servo.joint, name: servo.title.clone() }
 }
 
 impl Exchange {
@@ -85,7 +95,11 @@ impl Exchange {
             if let Some(refusal) = too_hot(slot, hot_c).filter(|_| shut_down) {
                 return Ok(Some(refusal));
             }
-            if self.try_take_hold(i)? {
+            let taken = match self.try_take_hold(i)? {
+                Ok(taken) => taken,
+                Err(refusal) => return Ok(Some(*refusal)),
+            };
+            if taken {
                 let slot = &mut self.slots[i];
                 (slot.in_hand, slot.torque_lost, slot.let_go, slot.verify) = (true, false, false, false);
                 (slot.hold_pending, slot.insist, slot.force) = (false, false, None);
@@ -96,8 +110,8 @@ impl Exchange {
         Ok(Some(unknown(&self.slots[i])))
     }
 
-    /// Whether it holds where it was just read.
-    fn try_take_hold(&mut self, i: usize) -> Result<bool, BusError> {
+    /// Whether it holds where it was just read; one that stands a little beyond the limits of its servo, at the nearer one.
+    fn try_take_hold(&mut self, i: usize) -> Result<Result<bool, Box<Refusal>>, BusError> {
         let slot = &self.slots[i];
         let id = slot.unit.id();
         let (Some(torque), Some(address), Some(angle_rad)) = (
@@ -105,20 +119,46 @@ impl Exchange {
             slot.unit.goal_address(),
             slot.reading.angle_rad,
         ) else {
-            return Ok(false);
+            return Ok(Ok(false));
         };
-        let Ok(goal) = slot.unit.goal_ticks(angle_rad) else { return Ok(false) };
+        let Ok(mut goal) = slot.unit.goal_ticks(angle_rad) else { return Ok(Ok(false)) };
         let bytes = slot.unit.goal_bytes(goal, self.speed_rad_s);
         let lacks_force = lacks_force(slot);
-        if !self.bus.write_once(id, address, &bytes)? || !self.bus.write_once(id, torque.address, &[1])? {
-            return Ok(false);
+        let Some(said) = self.bus.write_told(id, address, &bytes)? else { return Ok(Ok(false)) };
+        if said.is_outside() {
+            // It kept the goal that it had, and would go there as soon as it has torque.
+            match self.nearest_allowed(i, goal)? {
+                Some(nearest) if nearest.0.abs_diff(goal.0) <= MOST_BEYOND => goal = nearest,
+                Some(_) => return Ok(Err(Box::new(beyond(&self.slots[i])))),
+                None => return Ok(Ok(false)),
+            }
+            let bytes = self.slots[i].unit.goal_bytes(goal, self.speed_rad_s);
+            let taken = self.bus.write_told(id, address, &bytes)?;
+            if taken.is_none_or(StatusError::is_outside) {
+                return Ok(Ok(false));
+            }
+        }
+        if !self.bus.write_once(id, torque.address, &[1])? {
+            return Ok(Ok(false));
         }
         if lacks_force {
             self.restore_force(i)?;
         }
         self.read_block(i)?;
         let slot = &self.slots[i];
-        Ok(slot.reading.torque_on == Some(true) && slot.goal == Some(goal) && !slot.has_no_force())
+        Ok(Ok(slot.reading.torque_on == Some(true) && slot.goal == Some(goal) && !slot.has_no_force()))
+    }
+
+    /// The nearest goal that a servo allows by the limits in its memory; `None`: it does not tell them.
+    fn nearest_allowed(&mut self, i: usize, goal: Ticks) -> Result<Option<Ticks>, BusError> {
+        let unit = &self.slots[i].unit;
+        let limits = (unit.table.register(Item::CwAngleLimit), unit.table.register(Item::CcwAngleLimit));
+        let (Some(low), Some(high)) = limits else { return Ok(None) };
+        let (low, high, id) = (*low, *high, unit.id());
+        let status = self.bus.read(id, low.address, ANGLE_LIMIT_BYTES)?;
+        let of = |register: Register| register.in_data(low.address, &status.data);
+        let (Some(low), Some(high)) = (of(low), of(high)) else { return Ok(None) };
+        Ok((low <= high).then(|| Ticks(goal.0.clamp(low, high))))
     }
 
     /// After an overload shutdown a servo's torque limit is zero, and after a grip it may be small; its

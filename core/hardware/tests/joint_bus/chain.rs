@@ -49,6 +49,8 @@ pub struct FakeServo {
     pub switched_on: u32,
     /// Whether its limit of torque stays as it is, whatever is written.
     pub keeps_its_limit: bool,
+    /// Goals outside of these are not taken, ticks.
+    pub angle_limits: Option<[u16; 2]>,
 }
 
 /// A packet with goals, as it arrived.
@@ -87,6 +89,7 @@ impl FakeServo {
             sinks_ticks_s: 0.0,
             switched_on: 0,
             keeps_its_limit: false,
+            angle_limits: None,
         };
         servo.set(Item::ModelNumber, table.number);
         servo.set(Item::FirmwareVersion, 36);
@@ -200,6 +203,9 @@ impl Chain {
             }
             Instruction::Write { address, data } => {
                 self.written.push((id, Instruction::Write { address, data: data.clone() }));
+                if self.is_outside(id, address, &data) {
+                    return encode_status(id, 0x02, &[]).expect("short");
+                }
                 self.store(id, address, &data);
                 self.status(id, 0, 0).unwrap_or_default()
             }
@@ -217,6 +223,16 @@ impl Chain {
             }
             _ => vec![],
         }
+    }
+
+    /// Whether a goal lies outside of the servo's limits: then nothing is stored (MX-64 manual).
+    fn is_outside(&self, id: u8, address: u16, data: &[u8]) -> bool {
+        let servo = self.servos.get(&id).filter(|servo| servo.powered);
+        let Some([low, high]) = servo.and_then(|servo| servo.angle_limits) else { return false };
+        let is_goal = servo
+            .and_then(|servo| servo.table.register(Item::GoalPosition))
+            .is_some_and(|register| register.address == address);
+        is_goal && !(low..=high).contains(&u16::from_le_bytes([data[0], data[1]]))
     }
 
     fn store(&mut self, id: u8, address: u16, data: &[u8]) {

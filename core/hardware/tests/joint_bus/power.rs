@@ -9,7 +9,7 @@ use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
 
 use super::chain::PtyChain;
-use super::world::{await_state, has_torque, id_of, joint, nico, ready, run, take_hold, turn};
+use super::world::{await_state, has_torque, id_of, joint, limp, nico, ready, run, take_hold, turn};
 
 /// Random cuts in the suite; the figure of SAFETY.md is taken with 1000.
 const CUTS: usize = 24;
@@ -206,6 +206,45 @@ fn the_arm_stays_where_it_sank_to_until_it_is_taken_hold_of() {
         assert!((chain.lock().servos[&servo].position - there).abs() <= 1.0, "held where it sank to");
         let begin = driver.state().measured.clone().expect("read");
         assert!(matches!(run(&driver, elbow, begin[elbow] + 0.1, 0.3), MoveOutcome::Arrived { .. }));
+    }
+}
+
+/// A servo takes no goal beyond the limits in its memory and keeps the one that it had: with torque it would go there.
+#[test]
+fn a_joint_that_sank_beyond_its_limits_never_goes_to_an_older_goal() {
+    for (beyond, is_held) in [(20_u16, true), (300, false)] {
+        let (rig, chain, driver) = limp();
+        let elbow = joint(&rig, "r_elbow_y");
+        let servo = id_of(&rig, elbow);
+        let there = {
+            let mut chain = chain.lock();
+            let fake = chain.servos.get_mut(&servo).expect("there");
+            let there = fake.position.round() as u16;
+            // It was somewhere else before it sank.
+            fake.set(Item::GoalPosition, there + 500);
+            fake.set(Item::CwAngleLimit, there + beyond);
+            fake.set(Item::CcwAngleLimit, there + 1000);
+            fake.angle_limits = Some([there + beyond, there + 1000]);
+            there
+        };
+        driver.engage(&[]).expect("queued");
+        let all_others = |s: &plumbline_hardware::joints::JointState| {
+            s.joints
+                .iter()
+                .enumerate()
+                .all(|(i, j)| rig.servos[i].id == servo && !is_held || j.torque_on == Some(true))
+        };
+        await_state(&driver, "the others hold", all_others);
+        std::thread::sleep(Duration::from_millis(500));
+        assert_eq!(has_torque(&chain, servo), is_held, "{beyond} ticks beyond");
+        let moved = chain.lock().servos[&servo].position - f64::from(there);
+        let wanted = if is_held { f64::from(beyond) } else { 0.0 };
+        assert!((moved - wanted).abs() <= 1.0, "{beyond} ticks beyond: it moved by {moved}");
+        if !is_held {
+            let state = await_state(&driver, "it is refused", |s| s.refusal.is_some());
+            let (_, refusal) = state.refusal.clone().expect("it is refused");
+            assert!(refusal.to_string().contains("turn it back by hand"), "{refusal:?}");
+        }
     }
 }
 

@@ -16,6 +16,7 @@ use super::fault::{BusCounts, FaultKind};
 use super::instruction::{BROADCAST, Instruction};
 use super::packet::{self, Status};
 use super::port::ServoPort;
+use super::status_error::StatusError;
 use super::wire_time::WireTime;
 
 /// Share of the surplus of the margin for answers by which it shrinks again with every answer.
@@ -150,8 +151,19 @@ impl Bus {
     /// The same in a single attempt; returns whether it was confirmed. For what must not be said
     /// once more without looking: between two attempts a servo may have lost its power and sunk.
     pub(crate) fn write_once(&mut self, id: u8, address: u16, data: &[u8]) -> Result<bool, BusError> {
+        Ok(self.write_told(id, address, data)?.is_some())
+    }
+
+    /// The same, with what the servo complains about; `None`: it was not confirmed.
+    pub(crate) fn write_told(
+        &mut self,
+        id: u8,
+        address: u16,
+        data: &[u8],
+    ) -> Result<Option<StatusError>, BusError> {
         let instruction = Instruction::Write { address, data: data.to_vec() };
-        Ok(self.ask_once(id, &instruction, Some(0), self.far())?.is_ok())
+        let answered = self.ask_once(id, &instruction, Some(0), self.far())?;
+        Ok(answered.ok().map(|status| status.error))
     }
 
     /// Writes the same registers of many servos at once. Nobody answers.
