@@ -8,12 +8,12 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use plumbline::{PlumblineWindow, Screen, WindowSettings};
 use plumbline_engine::view::{
     AcceptedCalibration, CommissionDone, CommissionFigure, CommissionSpent, CommissionState, CommissionStep,
-    CommissionStepView, CommissionView, EyesView, Gate, GateState, MountView, Need, SourceStatus, SourceView,
-    StepState, TouchPhase,
+    CommissionStepView, CommissionView, EyesView, Gate, GateState, MotionState, MountView, Need,
+    SourceStatus, SourceView, StepState, TouchPhase,
 };
 use plumbline_engine::{
-    Command, CommissionCommand, EyesCommand, GraspCommand, HandEyeCommand, MountCommand, SourceSpec,
-    TouchCommand, TwinCommand, View,
+    Command, CommissionCommand, EyesCommand, GraspCommand, HandEyeCommand, MountCommand, RobotCommand,
+    SourceSpec, TouchCommand, TwinCommand, View,
 };
 use plumbline_model::StereoCalibration;
 use plumbline_model::touch_plan::{PlanOptions, Purpose};
@@ -340,7 +340,7 @@ fn the_hands_are_looked_at_then_what_was_learned_is_accepted() {
     let (label, window, sent) = press(view.clone());
     assert_eq!(label, "Next: tie the arms to the eyes");
     assert_eq!(sent, [Command::from(HandEyeCommand::Accept)]);
-    assert!(says(&window, "12.1 mm beside its arm, 1.40 mm with what was learned"));
+    assert!(says(&window, "1.40 mm beside its arm with what was learned, 12.1 mm before"));
     assert!(says(&window, "found at 11 of 12 places"));
     assert!(says(&window, "its arm stays as it was: it was not seen"));
 
@@ -367,6 +367,51 @@ fn hands_are_not_looked_at_with_cold_eyes_unwarned() {
     assert_eq!(label, "Next: warm the twin's eyes up");
     assert_eq!(sent, [Command::from(TwinCommand::AdvanceWarmUp { minutes: 10.0 })]);
     assert!(says(&window, "Warming moves nothing"));
+}
+
+/// A calibration made warm is not good while the eyes are cold, and the top line says so, too.
+#[test]
+fn the_lamp_of_the_calibration_warns_while_the_eyes_are_colder_than_then() {
+    let mut view = View { eyes: Arc::new(eyes_in_use()), ..everything() };
+    let lamp = |view: &View| {
+        let window = Fake::over(view.clone()).window(on(Screen::Live));
+        let lamps = window.query_all_by_label_contains("Calibration ");
+        let words: Vec<String> = lamps.filter_map(|lamp| lamp.accesskit_node().value()).collect();
+        assert!(!words.is_empty(), "there is one");
+        words.iter().any(|word| word == "warning")
+    };
+    Arc::make_mut(&mut view.grasp).gates = Arc::from([]);
+    assert!(!lamp(&view));
+    let text = "The eyes have been on for 1 min and were calibrated after 21 min: places are off until they are as warm.";
+    let gate = Gate { of: Need::Warmth, state: GateState::Doubtful, text: text.to_owned() };
+    Arc::make_mut(&mut view.grasp).gates = Arc::from([gate]);
+    assert!(lamp(&view));
+}
+
+/// Limp joints sink whatever else waits to be gone on with.
+#[test]
+fn limp_joints_are_taken_hold_of_before_anything_goes_on() {
+    let mut view = at(CommissionStep::Touches);
+    view.touch = Arc::new(made_up_touch::after(3, TouchPhase::Paused { why: None }));
+    assert_ne!(press(view.clone()).0, "Next: hold all joints");
+    Arc::make_mut(&mut view.robot).motion = MotionState::Limp;
+    let (label, window, sent) = press(view.clone());
+    assert_eq!(label, "Next: hold all joints");
+    assert!(
+        sent.iter().any(|command| matches!(command, Command::Robot(RobotCommand::Torque { .. }))),
+        "{sent:?}"
+    );
+    assert!(says(&window, "limp: they can be turned by hand, and sink"));
+    // STOP holds nothing that is limp.
+    Arc::make_mut(&mut view.robot).stopped = true;
+    let window = Fake::over(view.clone()).window(on(Screen::Touch));
+    assert!(says(&window, "they sink where nobody holds them") && !says(&window, "nothing moves until"));
+    // What sank beyond its limit turns when it is held, which is said before.
+    Arc::make_mut(&mut view.robot).stopped = false;
+    let joint = &mut Arc::make_mut(&mut Arc::make_mut(&mut view.robot).joints)[0];
+    joint.angle_rad = Some(joint.limits.upper_rad + 0.03);
+    let window = Fake::over(view).window(on(Screen::Touch));
+    assert!(says(&window, "turns back to it") && says(&window, "by 1.72°"));
 }
 
 /// A screen whose own next thing is elsewhere has not two things that come next.

@@ -94,11 +94,15 @@ fn every_state_says_what_it_is() {
     };
     let failed = DriftView { failed: Some("Only 3 places could be matched.".to_owned()), ..watching(None) };
     let old = DriftView { is_watching: false, step: StepState::Done, ..watching(Some(course(3.0))) };
+    let now = std::time::Instant::now();
+    let looks_at = [now - std::time::Duration::from_secs(70), now + std::time::Duration::from_secs(40)];
+    let seldom = DriftView { looks_at: Some(looks_at), ..watching(Some(course(0.1))) };
     for (drift, words) in [
         (watching(None), "Looks for the first time"),
         (waits, "it looks again when it rests"),
         (failed, "Only 3 places"),
         (old, "Not watched any more: old."),
+        (seldom, "The last look was 1 min ago. This computer is busy, so it looks seldom"),
         (watching(Some(course(0.1))), "Places stay where they were"),
         (watching(Some(course(20.0))), "Tomato: was moved by 20 mm"),
     ] {

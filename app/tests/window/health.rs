@@ -255,3 +255,26 @@ fn a_proposal_that_was_judged_before_places_moved_is_to_be_judged_again() {
     click(&mut window, ASK);
     assert_eq!(fake.take_sent(), [Command::from(EyesCommand::JudgeHealth)]);
 }
+
+/// What cold eyes saw is not told of eyes that are warm by now.
+#[test]
+fn what_was_judged_with_colder_eyes_does_not_stand_once_they_are_warm() {
+    let HealthState::Judged(health) = judged(0.032, None) else { unreachable!("just made") };
+    let of = |warmed_since| {
+        let at = jiff::Timestamp::now();
+        let when = JudgedWhen { at, eyes_on_min: Some(3.0), moved_m: None, colder: Some(true), warmed_since };
+        let view = with_health(HealthView {
+            state: HealthState::Judged(health.clone()),
+            judged: Some(health.clone()),
+            when: Some(when),
+            colder_wait_min: (!warmed_since).then_some(7.0),
+            does_not_hold: None,
+        });
+        Fake::over(view).window(on(Screen::Drift))
+    };
+    let cold = of(false);
+    assert!(says(&cold, "Wait 7 min, then ask again") && says(&cold, "with cold eyes"));
+    let warm = of(true);
+    assert!(says(&warm, "are as warm by now: it does not stand any more. Ask again."));
+    assert!(!says(&warm, "Calibrate the eyes again"));
+}

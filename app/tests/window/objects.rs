@@ -132,7 +132,7 @@ fn a_leak_is_told_in_a_sentence() {
     let fake = Fake::over(live(detect()));
     let mut window = fake.window_of_size(settings(), TALL);
     assert!(!says(&window, "240 mm behind it"));
-    click(&mut window, "Right hand, 331, −118, 82 ± 4 mm");
+    click(&mut window, "Right hand, 331, −118, 82 mm, doubtful");
     assert!(says(&window, "240 mm behind it"));
 }
 
@@ -270,7 +270,7 @@ fn pictures_of_objects() {
             let settings = WindowSettings { theme, ..settings() };
             let mut window = fake.window_with(settings, [1440.0, 1100.0], true);
             if choose {
-                click(&mut window, "Right hand, 331, −118, 82 ± 4 mm");
+                click(&mut window, "Right hand, 331, −118, 82 mm, doubtful");
             }
             window.run_steps(3);
             let image = window.render().expect("the test renderer draws");

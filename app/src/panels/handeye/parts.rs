@@ -68,13 +68,16 @@ fn came_of_it(ui: &mut Ui, view: &HandEyeView, summary: &HandEyeSummary) {
         ui.spacing_mut().item_spacing.x = space::L;
         if let Some((hand, [before_m, after_m])) = summary.worse() {
             let role = if after_m > before_m { Role::Warning } else { Role::Accepted };
-            let worse = if summary.hands.len() > 1 { ", the worse one" } else { "" };
-            let name = format!("{} hand{worse}, beside its arm, {what}", hand.name());
-            big_figure(ui, &name, &format::mm(after_m), role);
-            big_figure(ui, "the same before", &format::mm(before_m), Role::Ink);
+            big_figure(ui, &format!("{} hand, {what}", hand.name()), &format::mm(after_m), role);
+            big_figure(ui, "before", &format::mm(before_m), Role::Ink);
         }
     });
-    ui.label(theme::small(ui, format!("Looked at {}; on looks that were not used, rms.", clock(summary.at))));
+    let worse = if summary.hands.len() > 1 { ", of both hands the worse one" } else { "" };
+    let said = format!(
+        "How far beside its arm it is seen, rms on looks that were not used{worse}. Looked at {}.",
+        clock(summary.at)
+    );
+    ui.label(theme::small(ui, said));
     ui.add_space(space::S);
     if let Some(why) = &view.stale {
         warning(ui, why);

@@ -91,12 +91,13 @@ pub fn take_effects(kept: &mut Kept, around: &CommissionAround, time: Time) {
 }
 
 /// A check says something of the model only when it was made after the search for effects and the look at the
-/// hands.
+/// hands, and of the place of the screen that is in use.
 fn checked(around: &CommissionAround, kept: Option<&Kept>) -> Made {
     let checked = kept?.checked.as_ref()?;
     let effects = effects(around, kept)?;
     let hands = counts(&around.hands, kept)?;
-    let after = [effects.at, hands.at].into_iter().flatten().all(|made| checked.at >= made);
+    let screen = around.screen.as_ref()?;
+    let after = [effects.at, hands.at, screen.at].into_iter().flatten().all(|made| checked.at >= made);
     let figure = CommissionFigure::Missed { mean_m: checked.mean_m, touches: checked.touched };
     after.then_some(CommissionDone { at: Some(checked.at), figure })
 }

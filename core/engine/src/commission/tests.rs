@@ -307,6 +307,26 @@ fn a_check_before_the_look_at_the_hands_says_nothing() {
 }
 
 #[test]
+fn a_check_of_another_place_of_the_screen_says_nothing() {
+    let mut lab = Lab::new();
+    lab.tell(START);
+    lab.calibrated();
+    lab.around.run = Some(lab.run("touches", Purpose::Train, 24, true));
+    lab.after_s(1);
+    lab.around.found = Some(lab.found("touches", false));
+    lab.around.hands = Some(lab.made(SEEN));
+    lab.after_s(1);
+    lab.time = lab.time.after(Duration::from_secs(5));
+    lab.around.run = Some(lab.run("check", Purpose::Check, 20, true));
+    assert_eq!(lab.after_s(1).now(), Some(CommissionStep::Grasp));
+    let screen = lab.around.screen.take();
+    let view = lab.after_s(1);
+    assert!(view.now() == Some(CommissionStep::Screen) && view.of(CommissionStep::Check).is_none());
+    lab.around.screen = screen;
+    assert_eq!(lab.after_s(1).now(), Some(CommissionStep::Grasp), "what is used again was checked");
+}
+
+#[test]
 fn a_file_that_is_something_else_is_said_and_not_written_over() {
     for (text, words) in [
         ("{", "does not say how far"),

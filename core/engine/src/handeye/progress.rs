@@ -38,19 +38,22 @@ impl Progress {
     }
 }
 
+/// A look at a hand takes as long as so many others: the arm brings it there first.
+const OF_A_HAND: usize = 3;
+
 /// Tells the window how far it is.
 pub struct Watcher<'a> {
     /// For the window.
     pub progress: Progress,
     /// The job.
     pub context: &'a dyn JobContext,
-    /// Looks so far.
+    /// Looks so far, those at a hand for as many as they take.
     pub looks: usize,
 }
 
 impl Watcher<'_> {
     fn report(&self, doing: &str) {
-        let all = SeenBody::LOOKS + SeenScreen::LOOKS + 1 + 2 * Looks::MOST;
+        let all = SeenBody::LOOKS + SeenScreen::LOOKS + 1 + 2 * Looks::MOST * OF_A_HAND;
         self.context.report((self.looks as f64 / all as f64).min(1.0), doing);
     }
 }
@@ -65,7 +68,7 @@ impl Watch for Watcher<'_> {
             Part::Hand(Hand::Right) => "looking at the right hand",
             Part::Hand(Hand::Left) => "looking at the left hand",
         });
-        self.looks += 1;
+        self.looks += if matches!(part, Part::Hand(_)) { OF_A_HAND } else { 1 };
     }
 
     fn saw(&mut self, seen: &Seen) {
