@@ -163,6 +163,11 @@ impl Notifications {
         }
     }
 
+    /// Takes those off the screen that say this and ask for nothing more.
+    pub fn dismiss_those_of(&mut self, text: &str) {
+        self.kept.iter_mut().filter(|n| n.text.contains(text)).for_each(|n| n.dismissed = true);
+    }
+
     /// Forgets everything.
     pub fn clear(&mut self) {
         self.kept.clear();

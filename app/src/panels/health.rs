@@ -84,8 +84,8 @@ fn figures(ui: &mut Ui, name: &str, figures: &HealthFigures) {
         .collect();
     rows.push(KeyValue::quantity("Right eye has turned", Quantity::Angle, figures.turn_rad));
     rows.push(
-        KeyValue::text("Vertical error", format::px(figures.epipolar_px))
-            .help("How far matched places leave the epipolar lines"),
+        KeyValue::text("Matches off", format::px(figures.epipolar_px))
+            .help("How far matched places leave the epipolar lines, vertically. They are matched some ten times less finely than corners of a board"),
     );
     key_value_grid(ui, &format!("health {name}"), &rows);
 }

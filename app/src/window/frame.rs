@@ -31,6 +31,7 @@ impl PlumblineWindow {
             self.take_answer(ctx, answer);
         }
         self.notices.take(&self.view.notices);
+        self.notices.see_stop(self.view.robot.stopped);
         self.go_on_taking(ctx);
         self.log.refresh(self.settings.log_open);
         self.follow_the_work();

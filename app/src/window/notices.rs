@@ -26,6 +26,8 @@ pub(super) struct NoticeList {
     /// How often the newest one was said.
     times: u32,
     unread: usize,
+    /// Whether STOP was latched when it was looked last.
+    stopped: bool,
     history_open: bool,
     /// In this pass: a press of the button that opened the list closes it, and does not open it anew.
     closed_in_pass: Option<u64>,
@@ -86,6 +88,14 @@ impl NoticeList {
         for number in &newest[..newest.len().saturating_sub(1)] {
             self.shown.dismiss(*number);
         }
+    }
+
+    /// What STOP ended is no news any more once it is released.
+    pub(super) fn see_stop(&mut self, stopped: bool) {
+        if self.stopped && !stopped {
+            self.shown.dismiss_those_of("STOP was pressed");
+        }
+        self.stopped = stopped;
     }
 
     /// Adds a passing message of the window.

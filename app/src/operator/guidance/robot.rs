@@ -214,7 +214,7 @@ pub(super) fn mount(view: &View) -> Guidance {
         Some(why) => say(format!("{why} {then}")).warn(),
         None => say(then),
     };
-    if view.twin.running && view.twin.board.is_none() {
+    if view.twin.running && !view.twin.has_lying_board() {
         let lies = "The board has to lie where both eyes see it; the head turns, the board stays.";
         return told(lies.to_owned())
             .then("Lay the board on the table", Action::Robot(RobotAction::LayBoard));

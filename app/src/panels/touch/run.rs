@@ -202,6 +202,8 @@ fn proven(ui: &mut Ui, touch: &TouchView) {
     }
 }
 
+/// Less than that no touchscreen tells, m.
+const UNSEEN_M: f64 = 5e-5;
 /// Of fewer repeats the gap, too, makes no noise.
 const FEW_REPEATS: usize = 10;
 
@@ -228,7 +230,12 @@ fn figures(ui: &mut Ui, found: &TouchFigures) {
         let aside = if right < 0.0 { "left" } else { "right" };
         let along = if near < 0.0 { "away from" } else { "toward" };
         big_figure(ui, &format!("bias: to the {aside}, {along} the robot"), &bias, Role::Ink);
-        let noise = found.noise_m.map_or("—".to_owned(), format::mm);
+        // Repeats that meet the same pixel scatter by less than it can tell, which is not by nothing.
+        let noise = match found.noise_m {
+            None => format::NONE.to_owned(),
+            Some(noise_m) if noise_m < UNSEEN_M => "less than a pixel".to_owned(),
+            Some(noise_m) => format::mm(noise_m),
+        };
         let label = match found.noise_m {
             None => "noise floor: no repeats".to_owned(),
             Some(_) if found.repeats < FEW_REPEATS => {

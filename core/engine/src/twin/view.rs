@@ -1,6 +1,7 @@
 //! The twin, as far as the operator may see and move it: what was placed where, its clock, the
 //! faults that were switched on. What the scenario hides is not here.
 
+use nalgebra::Vector3;
 use plumbline_model::frame::{Board, Point, Pose, Robot};
 
 /// The twin.
@@ -67,6 +68,14 @@ impl Default for TwinView {
             payload_kg: 0.0,
             faults: Vec::new(),
         }
+    }
+}
+
+impl TwinView {
+    /// Whether the board is out and lies flat, its printed side up; it may also be held somewhere in the air.
+    pub fn has_lying_board(&self) -> bool {
+        let into_the_board = |pose: &Pose<Robot, Board>| pose.isometry.rotation * Vector3::z();
+        self.board.as_ref().is_some_and(|pose| into_the_board(pose).z < -0.99)
     }
 }
 

@@ -43,6 +43,11 @@ pub(super) fn of(slot: &Slot, gate: &Gate) -> Option<String> {
             "servo {id} did not answer for a while: nothing is sent to it until you switch torque on, which holds it where it is then"
         ));
     }
+    if slot.holds_unasked() {
+        return Some(format!(
+            "servo {id} holds, and nobody has taken hold of it here: nothing is sent to it until you switch torque on, which holds it where it is then"
+        ));
+    }
     if slot.missed > 2 && slot.answers_late() {
         return Some(format!(
             "servo {id} answered too late in the last {} cycles: {}",

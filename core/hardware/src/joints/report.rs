@@ -23,7 +23,7 @@ impl Controller {
             let mut reading = slot.reading.clone();
             reading.age = reading.read_at.map(|at| now.duration_since(at));
             reading.problem = problem::of(slot, gate);
-            reading.let_go = slot.let_go;
+            reading.let_go = slot.let_go || slot.holds_unasked();
             if let Some(temperature_c) = reading.temperature_c.filter(|t| *t >= gate.warm_c) {
                 warnings.push(problem::warm(&slot.unit.servo.title, temperature_c, gate));
             }

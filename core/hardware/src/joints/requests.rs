@@ -217,7 +217,7 @@ fn may_move(slot: &Slot, limit_c: f64) -> Result<(), Refusal> {
     if !slot.is_known() || slot.silence() >= RECENT {
         return Err(unknown(slot));
     }
-    if !slot.holds_torque() && (slot.let_go || slot.reading.torque_on == Some(true)) {
+    if !slot.holds_torque() && (slot.let_go || slot.holds_unasked()) {
         return Err(Refusal::LetGo { joint, name });
     }
     if !slot.holds_torque() {

@@ -108,6 +108,13 @@ fn a_killed_run_goes_on_exactly_where_it_was() {
     desk.touch_all();
     assert_eq!((desk.view().phase, rows(&session)), (TouchPhase::Finished, 8));
     assert!(Desk::new(folder.path()).view().unfinished.is_empty());
+    // For how long the robot was on by the second connection nobody knows: no time goes back.
+    let text = fs::read_to_string(session.join(names::TOUCHES)).expect("written");
+    let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let column = lines.next().and_then(|names| names.iter().position(|name| *name == "t_secs"));
+    let column = column.expect("a column of times");
+    let told: Vec<bool> = lines.map(|line| !line[column].is_empty()).collect();
+    assert_eq!(told, [true, true, true, false, false, false, false, false]);
 }
 
 #[test]

@@ -73,7 +73,7 @@ pub(super) struct Slot {
     pub identity: Identity,
     /// Taken hold of by the operator, and not silent or limp since.
     pub in_hand: bool,
-    /// When first read it is in hand if it holds: so it was found when the bus was opened.
+    /// When first read it is in hand if it holds: so it was found when the bus was opened, and has not fallen silent since.
     pub found_at_start: bool,
     /// Cycles in a row in which it was asked for itself and did not answer rightly.
     pub missed: u32,
@@ -214,6 +214,11 @@ impl Slot {
         self.in_hand && self.reading.torque_on == Some(true)
     }
 
+    /// Whether it holds and nobody has taken hold of it here.
+    pub fn holds_unasked(&self) -> bool {
+        !self.in_hand && self.reading.torque_on == Some(true)
+    }
+
     /// Whether it holds where it was sent, was heard in the last cycle and has nothing to say: there is nothing to take
     /// hold of.
     pub fn holds_well(&self) -> bool {
@@ -312,7 +317,6 @@ impl Slot {
         self.missed = self.missed.saturating_add(1);
         self.in_vain = self.in_vain.saturating_add(1);
         self.verify = true;
-        self.found_at_start = false;
         self.complaint = None;
     }
 
@@ -325,6 +329,7 @@ impl Slot {
             (self.let_go, self.held_goal) = (true, self.goal);
         }
         (self.silent, self.in_hand, self.verify) = (true, false, true);
+        self.found_at_start = false;
         (self.torque_lost, self.alarm, self.hold_pending, self.insist) = (false, false, false, false);
         (self.goal, self.ticks, self.force) = (None, None, None);
         if self.identity == Identity::Right {

@@ -73,6 +73,24 @@ fn a_question_that_was_missed_a_moment_ago_leaves_the_angle_known() {
     assert!(neck(Duration::from_millis(300), 4).is_known());
 }
 
+/// A busy machine misses the first answer after the bus was looked through: what holds then was found so.
+#[test]
+fn a_servo_that_was_found_holding_is_in_hand_when_it_is_first_read() {
+    let first_read = |silent: bool, holds: bool| {
+        let mut slot = neck(Duration::from_millis(10), 0);
+        (slot.in_hand, slot.found_at_start, slot.silent) = (false, true, false);
+        slot.miss();
+        if silent {
+            slot.fall_silent();
+        }
+        slot.take_torque(holds);
+        (slot.in_hand, slot.holds_unasked())
+    };
+    assert_eq!(first_read(false, true), (true, false));
+    assert_eq!(first_read(false, false), (false, false), "limp is limp");
+    assert_eq!(first_read(true, true), (false, true), "and that nobody has taken hold of it is said");
+}
+
 /// What was in hand and is heard again is still in hand where this machine alone was late; else it is taken hold of anew.
 #[test]
 fn a_servo_that_only_this_machine_missed_is_still_in_hand() {
