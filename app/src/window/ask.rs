@@ -101,7 +101,7 @@ impl Ask {
             Self::Connect(chosen) => connect::show(ui, view, chosen),
             Self::CloseWhileMoving => close_while_moving(ui, view),
             Self::CloseUnaccepted => sheet_of_unaccepted(ui, view),
-            Self::LetGo => let_go(ui),
+            Self::LetGo => let_go(ui, view),
             Self::CommissionAnew => commission_anew(ui, view),
             Self::ShortenAnswers => shorten_answers(ui, view),
             Self::NewLabelSet { folder, classes } => new_label_set(ui, folder, classes),
@@ -246,12 +246,13 @@ fn commission_anew(ui: &mut Ui, view: &View) -> Asked {
     }
 }
 
-fn let_go(ui: &mut Ui) -> Asked {
-    title(
-        ui,
-        "Let all joints go limp?",
-        "Both arms sink and the head nods, by their own weight: hold them, and keep clear.",
-    );
+fn let_go(ui: &mut Ui, view: &View) -> Asked {
+    let falls = view.grasp.held.as_ref().map_or_else(String::new, |held| {
+        format!(" The {} falls out of the {} hand.", held.object.to_lowercase(), held.hand.name())
+    });
+    let about =
+        format!("Both arms sink and the head nods, by their own weight: hold them, and keep clear.{falls}");
+    title(ui, "Let all joints go limp?", &about);
     match buttons_with_care(ui, "Let all go limp") {
         Some(true) => Asked::Command(RobotCommand::Torque { joints: Vec::new(), on: false }.into()),
         Some(false) => Asked::Closed,

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use plumbline_engine::view::{ContactSource, TouchPhase};
+use plumbline_engine::view::{ContactSource, MotionState, TouchPhase};
 use plumbline_engine::{Command, TouchCommand, View};
 use plumbline_model::session::Touchscreen;
 use plumbline_model::touch_plan::{Finger, PlanOptions, Purpose, TouchArea};
@@ -287,7 +287,7 @@ fn start_refusal(view: &View) -> Refusal {
     if touch.plan.as_ref().is_none_or(|plan| plan.reachable == 0) {
         return Some("no target can be reached: choose another area".into());
     }
-    full_hand(view).or_else(|| arm_refusal(view))
+    full_hand(view).or_else(|| limp(view)).or_else(|| arm_refusal(view))
 }
 
 /// A finger that touches would drop what the hand holds, onto the screen.
@@ -297,9 +297,15 @@ fn full_hand(view: &View) -> Refusal {
     Some(format!("the {hand} hand holds the {object}: put it down first, on the screen Grasp").into())
 }
 
+/// Limp joints sink: nothing is begun from there.
+fn limp(view: &View) -> Refusal {
+    let is_limp = view.robot.connection.is_connected() && view.robot.motion == MotionState::Limp;
+    is_limp.then(|| "the joints are limp: hold all joints first, on the screen Robot".into())
+}
+
 fn resume_refusal(view: &View) -> Refusal {
     match view.touch.phase {
-        TouchPhase::Paused { .. } => full_hand(view).or_else(|| arm_refusal(view)),
+        TouchPhase::Paused { .. } => full_hand(view).or_else(|| limp(view)).or_else(|| arm_refusal(view)),
         // Waits for the disk: writing needs no arm.
         TouchPhase::Waiting { prepare: None, .. } => None,
         _ => Some("no run is paused".into()),

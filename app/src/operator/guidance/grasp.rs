@@ -1,8 +1,8 @@
 //! What to do next with grasping: one button, named by what it does.
 
 use plumbline_engine::view::{
-    GateState, GraspOutcome, GraspPhase, GraspRun, GraspView, InHand, JointView, LampState, Need, SinceHeld,
-    TrialsPhase,
+    Gate, GateState, GraspOutcome, GraspPhase, GraspRun, GraspView, InHand, JointView, LampState, Need,
+    SinceHeld, TrialsPhase,
 };
 use plumbline_engine::{HandStep, View};
 use plumbline_widgets::format;
@@ -90,8 +90,14 @@ fn idle(view: &View) -> Guidance {
         Some(GraspOutcome::Failed { why, .. } | GraspOutcome::Refused { why }) => {
             say(closed(why)).warn().then(label, Action::Grasp(GraspAction::Grasp))
         }
-        _ => say("Plan shows what would be sent; Grasp plans and moves the arm at once.")
-            .then(label, Action::Grasp(GraspAction::Grasp)),
+        _ => {
+            let plan = "Plan shows what would be sent; Grasp plans and moves the arm at once.";
+            let guidance = match doubt(view) {
+                Some(doubt) => say(format!("{doubt} {plan}")).warn(),
+                None => say(plan),
+            };
+            guidance.then(label, Action::Grasp(GraspAction::Grasp))
+        }
     }
 }
 
@@ -104,7 +110,13 @@ pub(super) fn has_to_be_held(view: &View) -> bool {
 
 /// Whether something speaks against where things are taken to lie.
 fn in_doubt(view: &View) -> bool {
-    view.grasp.gates.iter().any(|gate| gate.of == Need::Places && gate.state == GateState::Doubtful)
+    doubt(view).is_some()
+}
+
+/// What that is.
+fn doubt(view: &View) -> Option<&str> {
+    let is_doubt = |gate: &&Gate| gate.of == Need::Places && gate.state == GateState::Doubtful;
+    view.grasp.gates.iter().find(is_doubt).map(|gate| gate.text.as_str())
 }
 
 /// What is in a hand has to leave it before anything else is grasped.

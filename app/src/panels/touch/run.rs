@@ -2,7 +2,7 @@
 
 use egui::{Button, RichText, ScrollArea, Ui, vec2};
 use plumbline_engine::TouchCommand;
-use plumbline_engine::view::{TouchFigures, TouchOutcome, TouchPhase, TouchState, TouchView};
+use plumbline_engine::view::{MotionState, TouchFigures, TouchOutcome, TouchPhase, TouchState, TouchView};
 use plumbline_model::touch_plan::{Finger, PlanOptions, Purpose};
 use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::format;
@@ -91,6 +91,9 @@ fn state(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         TouchPhase::Paused { why } => {
             progress(ui, touch);
             match why {
+                _ if cx.view.robot.motion == MotionState::Limp => {
+                    warning(ui, "the joints are limp and sink: hold all joints first")
+                }
                 Some(why) => warning(ui, why),
                 None => {
                     ui.label(theme::weak(ui, "Paused. What was touched is on disk."));

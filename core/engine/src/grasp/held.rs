@@ -61,6 +61,10 @@ impl HeldWatch {
         if !robot.connection.is_connected() {
             return SinceHeld::Unknown;
         }
+        // Fingers without force hold nothing, whatever they lie around.
+        if self.is_limp(robot) {
+            return SinceHeld::LetGo;
+        }
         let Some(sent_rad) = self.sent_rad(robot) else { return SinceHeld::Held };
         let closed_rad = self.closed_rad.map_or(sent_rad, |closed_rad| closed_rad.max(sent_rad));
         self.closed_rad = Some(closed_rad);
@@ -75,6 +79,15 @@ impl HeldWatch {
             Some(empty_s) => SinceHeld::Slipped(Duration::from_secs_f64(empty_s)),
             None => SinceHeld::Held,
         }
+    }
+
+    /// Whether a joint of the hand was let go limp.
+    fn is_limp(&self, robot: &RobotView) -> bool {
+        let limp = |joint| {
+            let view = robot.joints.iter().find(|view| view.joint == joint);
+            view.is_some_and(|view| view.torque_on == Some(false))
+        };
+        self.hold.joints().any(limp)
     }
 
     /// How far the joints of the hand are sent from where they are open, the mean, rad; `None` while that is
@@ -185,6 +198,11 @@ mod tests {
         let mut held = watch(began);
         assert_eq!(held.look(&robot(0.2, 1.8, HOLDS), began), SinceHeld::Held);
         assert_eq!(held.look(&robot(0.0, 0.0, HOLDS), began), SinceHeld::LetGo);
+        let mut limp = robot(0.2, 1.8, MotionState::Limp);
+        let joints: Vec<JointView> =
+            limp.joints.iter().map(|joint| JointView { torque_on: Some(false), ..joint.clone() }).collect();
+        limp.joints = joints.into();
+        assert_eq!(watch(began).look(&limp, began), SinceHeld::LetGo, "fingers without force hold nothing");
         let away = RobotView { connection: Connection::None, ..robot(0.2, 1.8, HOLDS) };
         assert_eq!(watch(began).look(&away, began), SinceHeld::Unknown);
     }

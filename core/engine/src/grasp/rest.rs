@@ -45,7 +45,7 @@ pub(super) fn rest(around: &GraspAround, arm: &str) -> Gate {
                 off_rad.to_degrees()
             ),
         ),
-        None => open(Need::Rest, "The arm stands where it was sent."),
+        None => open(Need::Rest, "The arm stands, and holds what it was told last."),
     }
 }
 

@@ -22,6 +22,9 @@ pub enum Trouble {
     /// Nobody knows where the arm is.
     #[error("The joints have not been read yet. Wait a moment, then go on.")]
     NotRead,
+    /// It sinks.
+    #[error("The joints are limp and sink. Hold all joints, on the screen Robot, then go on.")]
+    Limp,
     /// Nothing would be felt.
     #[error(
         "The touch window is closed, so no contact can be felt. Open it full screen on the touch monitor, then go on."

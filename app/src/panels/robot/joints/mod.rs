@@ -6,7 +6,7 @@ mod proposing;
 
 use egui::{RichText, ScrollArea, Ui};
 use plumbline_engine::RobotCommand;
-use plumbline_engine::view::{JointView, RobotView};
+use plumbline_engine::view::{JointView, MotionState, RobotView};
 use plumbline_model::robot::JointIndex;
 use plumbline_widgets::format;
 use plumbline_widgets::joint_row::{
@@ -111,7 +111,11 @@ fn problems_line(ui: &mut Ui, robot: &RobotView) {
     }
     let Some((joint, problem)) = with.next() else {
         let all = format::count(robot.joints.len(), "joint");
-        let how = if robot.connection.is_connected() { "without a problem" } else { "as last seen" };
+        let how = match (robot.connection.is_connected(), &robot.motion) {
+            (true, MotionState::Limp) => "limp",
+            (true, _) => "without a problem",
+            (false, _) => "as last seen",
+        };
         let Some(missing) = words::silent(robot) else {
             ui.label(theme::small(ui, format!("{all} {how}")));
             return;

@@ -30,7 +30,7 @@ use crate::ground::jobs::JobId;
 use crate::ground::notice::NoticeLevel;
 use crate::ground::{Moment, Workflow};
 use crate::robot::RobotControl;
-use crate::robot::view::{Connection, RobotView};
+use crate::robot::view::{Connection, MotionState, RobotView};
 
 /// What the workflow can see of the rest.
 pub struct TouchAround {
@@ -163,6 +163,8 @@ impl TouchWorkflow {
             Some(Trouble::Stopped)
         } else if robot.measured.is_none() {
             Some(Trouble::NotRead)
+        } else if robot.motion == MotionState::Limp {
+            Some(Trouble::Limp)
         } else if source(robot) == ContactSource::Window && self.window.is_none() {
             Some(Trouble::WindowClosed)
         } else {
