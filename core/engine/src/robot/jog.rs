@@ -1,8 +1,10 @@
 //! From how fast a tip should go to how fast the joints must turn.
 //!
-//! Damped least squares over the tip's velocity and its turn about the vertical: near a
-//! stretched arm the tip goes slower than asked instead of the joints going wild.
-//! Source: Nakamura and Hanafusa: Inverse kinematic solutions with singularity robustness (1986).
+//! Least squares over the tip's velocity and its turn about the vertical, damped in those directions alone in which the
+//! arm is nearly stretched: there the tip goes slower than asked instead of the joints going wild, and everywhere else
+//! where it is asked to. (Damped everywhere, it went astray by a third of its way.)
+//! Sources: Nakamura and Hanafusa: Inverse kinematic solutions with singularity robustness (1986); numerical filtering:
+//! Maciejewski and Klein (1988).
 
 use nalgebra::{DMatrix, DVector};
 use plumbline_effects::ModelArm;
@@ -24,12 +26,24 @@ pub fn joint_rates(arm: &ModelArm, commanded: &Posture, rates: &JogRates, fastes
     let rows = slopes(arm, commanded);
     let [x, y, z] = rates.velocity_m_s;
     let wanted = DVector::from_vec(vec![x, y, z, rates.yaw_rad_s * LEVER_M]);
-    let square = &rows * rows.transpose() + DMatrix::identity(4, 4) * (DAMPING * DAMPING);
-    let Some(inverse) = square.try_inverse() else { return vec![0.0; arm.joints().len()] };
-    let speeds = rows.transpose() * inverse * wanted;
+    let Some(speeds) = solved(rows, &wanted) else { return vec![0.0; arm.joints().len()] };
     let fastest = speeds.amax();
     let slow_down = if fastest > fastest_rad_s { fastest_rad_s / fastest } else { 1.0 };
     speeds.iter().map(|speed| speed * slow_down).collect()
+}
+
+/// The smallest joint speeds that give a velocity; less of it in directions that the arm hardly has. `None`: the numbers
+/// are none.
+fn solved(rows: DMatrix<f64>, wanted: &DVector<f64>) -> Option<DVector<f64>> {
+    let joints = rows.ncols();
+    let parts = rows.try_svd(true, true, f64::EPSILON, 200)?;
+    let (u, v_t) = (parts.u?, parts.v_t?);
+    let mut speeds = DVector::zeros(joints);
+    for (k, value) in parts.singular_values.iter().enumerate() {
+        let gain = if *value >= DAMPING { 1.0 / value } else { value / (DAMPING * DAMPING) };
+        speeds += v_t.row(k).transpose() * (gain * u.column(k).dot(wanted));
+    }
+    speeds.iter().all(|speed| speed.is_finite()).then_some(speeds)
 }
 
 /// Velocity of the tip (m/rad) and its turn about the vertical (times [`LEVER_M`]), one column per
@@ -96,7 +110,30 @@ mod tests {
         let speeds = joint_rates(&arm, &ready(&rig), &rates, 10.0);
         let asked = Vector3::from(rates.velocity_m_s);
         let went = went(&arm, &ready(&rig), &speeds);
-        assert!((went - asked).norm() < 0.15 * asked.norm(), "{went:?}");
+        assert!((went - asked).norm() < 0.01 * asked.norm(), "{went:?}");
+    }
+
+    /// As a held button goes: step by step, each from where the last one ended.
+    #[test]
+    fn a_jog_of_some_centimeters_stays_on_its_line() {
+        let (rig, arm) = nominal();
+        let tip = |posture: &Posture| arm.tip(posture, &Conditions::default()).coords;
+        for asked in [[0.02, 0.0, 0.0], [0.0, 0.02, 0.0], [0.0, 0.0, 0.02]] {
+            let (mut posture, from) = (ready(&rig), tip(&ready(&rig)));
+            for _ in 0..200 {
+                let rates = JogRates { velocity_m_s: asked, yaw_rad_s: 0.0 };
+                let speeds = joint_rates(&arm, &posture, &rates, 10.0);
+                let angles: Vec<f64> = posture
+                    .of(arm.joints())
+                    .iter()
+                    .zip(&speeds)
+                    .map(|(angle, speed)| angle + speed * 0.01)
+                    .collect();
+                posture = posture.with(arm.joints(), &angles);
+            }
+            let off = tip(&posture) - from - 2.0 * Vector3::from(asked);
+            assert!(off.norm() < 1e-3, "{asked:?}: {off:?} beside 40 mm of way");
+        }
     }
 
     #[test]
@@ -106,14 +143,13 @@ mod tests {
         let model = RobotModel::new(rig.clone(), Arc::new(model_with(&rig, &effects))).expect("they fit");
         let real = model.arm(TIP).expect("a tip");
         let rates = JogRates { velocity_m_s: [0.05, -0.02, 0.01], yaw_rad_s: 0.0 };
-        // Damping makes the tip slower, not astray: what is asked of the arm without effects and of that
-        // with them is judged by the same measure.
+        // What is asked of the arm without effects and of that with them is judged by the same measure.
         let asked = Vector3::from(rates.velocity_m_s);
         let [with, without] = [&real, &nominal].map(|by| {
             let speeds = joint_rates(by, &ready(&rig), &rates, 10.0);
             (went(&real, &ready(&rig), &speeds) - asked).norm() / asked.norm()
         });
-        assert!(with < 0.15 && without > 1.5 * with, "astray by {with} with and {without} without");
+        assert!(with < 0.01 && without > 0.05, "astray by {with} with and {without} without");
     }
 
     #[test]
