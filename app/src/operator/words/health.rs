@@ -8,9 +8,8 @@ use plumbline_widgets::format;
 pub fn judged(when: &JudgedWhen, now: Timestamp) -> String {
     let ago = format::age(when.age(now));
     match when.is_cold() {
-        _ if when.colder == Some(false) => {
-            format!("Judged {ago}, with eyes about as warm as when they were calibrated.")
-        }
+        // About as warm as when they were calibrated, or warmer, which is said where it matters.
+        _ if when.colder == Some(false) => format!("Judged {ago}."),
         Some(true) => format!("Judged {ago}, with cold eyes."),
         Some(false) => format!("Judged {ago}, with warm eyes."),
         None => format!("Judged {ago}."),

@@ -122,10 +122,13 @@ fn said(view: &View, step: Option<CommissionStep>, screen: Screen) -> Said {
     if let Some(failed) = failed_inside(view, screen) {
         return failed.into();
     }
-    let Some(step) = step else { return all_done(view) };
-    if view.robot.stopped && view.robot.connection.is_connected() {
+    if view.robot.stopped && view.robot.connection.is_connected() && step.is_some() {
         return Said::wait(super::stopped_words(view), None).warn();
     }
+    // Limp joints sink, also after the last step.
+    let Some(step) = step else {
+        return robot::limp(&view.robot).map_or_else(|| all_done(view), Said::from);
+    };
     if let Some(running) = running(view) {
         return running;
     }
