@@ -2,13 +2,14 @@
 
 use std::borrow::Cow;
 
-use plumbline_engine::view::{ContactSource, MotionState, TouchPhase};
+use plumbline_engine::view::{ContactSource, TouchPhase};
 use plumbline_engine::{Command, TouchCommand, View};
 use plumbline_model::session::Touchscreen;
 use plumbline_model::touch_plan::{Finger, PlanOptions, Purpose, TouchArea};
 use serde::Serialize;
 
 use crate::operator::touch_monitor::window_problem;
+use crate::operator::words::robot::is_limp;
 
 /// Of touching the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -299,8 +300,7 @@ fn full_hand(view: &View) -> Refusal {
 
 /// Limp joints sink: nothing is begun from there.
 fn limp(view: &View) -> Refusal {
-    let is_limp = view.robot.connection.is_connected() && view.robot.motion == MotionState::Limp;
-    is_limp.then(|| "the joints are limp: hold all joints first, on the screen Robot".into())
+    is_limp(&view.robot).then(|| "the joints are limp: hold all joints first, on the screen Robot".into())
 }
 
 fn resume_refusal(view: &View) -> Refusal {

@@ -23,13 +23,12 @@ pub use touch::{
     check_in_words, done_of, go_on, is_screen_to_be_decided, minutes, waiting_touch, wanted, what_moves,
 };
 
-use plumbline_engine::view::{
-    CaptureHint, Connection, EyesView, GhostBoard, MotionState, Proposal, SourceStatus,
-};
+use plumbline_engine::view::{CaptureHint, Connection, EyesView, GhostBoard, Proposal, SourceStatus};
 use plumbline_engine::{SourceSpec, View};
 use plumbline_widgets::format;
 
 use super::words::more_doubts;
+use super::words::robot::is_limp;
 use super::{Action, CommissionAction, RobotAction, Screen, faults};
 use sentence::say;
 
@@ -95,7 +94,7 @@ fn stopped(view: &View, screen: Screen) -> Option<Guidance> {
 
 /// What STOP means just now: limp joints sink all the same.
 fn stopped_words(view: &View) -> &'static str {
-    match view.robot.motion == MotionState::Limp {
+    match is_limp(&view.robot) {
         true => {
             "Stopped, and the joints are limp: they sink where nobody holds them. Press Release STOP, at the top right, then hold all joints."
         }

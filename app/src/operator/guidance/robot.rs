@@ -9,7 +9,7 @@ use plumbline_widgets::format;
 use super::onward;
 use super::sentence::{Guidance, say};
 use crate::operator::words::mount;
-use crate::operator::words::robot::{is_close, move_sentence, moved_name, silent_together};
+use crate::operator::words::robot::{is_close, is_limp, move_sentence, moved_name, silent_together};
 use crate::operator::{Action, MountAction, RobotAction, Screen};
 
 /// Less than that beyond a limit nobody sees, rad.
@@ -79,8 +79,7 @@ pub(super) fn to_take_hold_of(robot: &RobotView) -> Option<Guidance> {
 
 /// No joint holds: whatever moves has to wait until they do.
 pub(super) fn limp(robot: &RobotView) -> Option<Guidance> {
-    let is_limp = robot.connection.is_connected() && robot.motion == MotionState::Limp;
-    is_limp.then(|| {
+    is_limp(robot).then(|| {
         let held = beyond(robot).unwrap_or_else(|| "They are held where they stand then.".to_owned());
         say(format!("The joints are limp: they can be turned by hand, and sink. {held}"))
             .warn()

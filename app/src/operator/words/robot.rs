@@ -1,6 +1,6 @@
 //! A move in words.
 
-use plumbline_engine::view::{Preview, RobotView};
+use plumbline_engine::view::{MotionState, Preview, RobotView};
 use plumbline_model::robot::{JointIndex, Rig};
 use plumbline_widgets::format;
 
@@ -109,6 +109,11 @@ pub fn silent_together(robot: &RobotView) -> Option<String> {
         "No answer from {who}: one plug that is out silences all behind it. Look at the plug of the first of them, and at \
          their supply."
     ))
+}
+
+/// Whether no joint holds, so that all of them sink.
+pub fn is_limp(robot: &RobotView) -> bool {
+    robot.connection.is_connected() && robot.motion == MotionState::Limp
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use egui::{Button, RichText, ScrollArea, Ui, vec2};
 use plumbline_engine::TouchCommand;
-use plumbline_engine::view::{MotionState, TouchFigures, TouchOutcome, TouchPhase, TouchState, TouchView};
+use plumbline_engine::view::{TouchFigures, TouchOutcome, TouchPhase, TouchState, TouchView};
 use plumbline_model::touch_plan::{Finger, PlanOptions, Purpose};
 use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::format;
@@ -14,6 +14,7 @@ use super::parts::error_length_m;
 use super::words;
 use crate::operator::guidance::{check_in_words, go_on, is_screen_to_be_decided};
 use crate::operator::words::proof::Proof;
+use crate::operator::words::robot::is_limp;
 use crate::operator::{Action, RobotAction, Screen, TouchAction, done_of, is_under_way, wanted};
 use crate::panels::parts::{action_button, warning};
 use crate::panels::{PanelContext, padded};
@@ -91,7 +92,7 @@ fn state(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         TouchPhase::Paused { why } => {
             progress(ui, touch);
             match why {
-                _ if cx.view.robot.motion == MotionState::Limp => {
+                _ if is_limp(&cx.view.robot) => {
                     warning(ui, "the joints are limp and sink: hold all joints first")
                 }
                 Some(why) => warning(ui, why),
