@@ -5,6 +5,7 @@
 use std::time::Duration;
 
 use plumbline_model::number;
+pub use plumbline_model::spread::NORMAL_95;
 
 /// Stands where there is no number.
 pub const NONE: &str = "—";
@@ -79,7 +80,7 @@ impl Quantity {
         self.with_unit(self.number(si))
     }
 
-    /// Number, uncertainty (one standard deviation) and unit: `120.05 ± 0.12 mm`.
+    /// Number of a known standard deviation, ± what holds 95 % ([`NORMAL_95`]), and unit: `120.05 ± 0.12 mm`.
     ///
     /// An uncertainty of zero, or one that is not finite, is left out.
     pub fn text_with(self, si: f64, sigma_si: f64) -> String {
@@ -88,12 +89,21 @@ impl Quantity {
 
     /// As [`Self::text_with`], without the unit.
     pub fn number_with(self, si: f64, sigma_si: f64) -> String {
-        let (value, sigma) = (self.on_screen(si), self.on_screen(sigma_si).abs());
-        if !(sigma.is_finite() && sigma > 0.0 && value.is_finite()) {
+        self.number_within(si, NORMAL_95 * sigma_si)
+    }
+
+    /// Number ± half of an interval that holds 95 %, and unit.
+    pub fn text_within(self, si: f64, half_si: f64) -> String {
+        self.with_unit(self.number_within(si, half_si))
+    }
+
+    fn number_within(self, si: f64, half_si: f64) -> String {
+        let (value, half) = (self.on_screen(si), self.on_screen(half_si).abs());
+        if !(half.is_finite() && half > 0.0 && value.is_finite()) {
             return self.number(si);
         }
-        let decimals = decimals_for(sigma, 2);
-        format!("{} ± {sigma:.decimals$}", fixed(value, decimals))
+        let decimals = decimals_for(half, 2);
+        format!("{} ± {half:.decimals$}", fixed(value, decimals))
     }
 
     /// `—` where there is no value.
@@ -112,12 +122,22 @@ impl Quantity {
     }
 }
 
+/// Meters as millimeters with half of an interval that holds 95 %: `120.05 ± 0.12 mm`.
+pub fn mm_within(length_m: f64, half_m: f64) -> String {
+    Quantity::Length.text_within(length_m, half_m)
+}
+
+/// How near something is known to be to where it is said to be, 95 %, of one standard deviation: `0.24 mm`.
+pub fn mm_known_to(sigma_m: f64) -> String {
+    mm(NORMAL_95 * sigma_m)
+}
+
 /// Meters as millimeters: `12.3 mm`.
 pub fn mm(length_m: f64) -> String {
     Quantity::Length.text(length_m)
 }
 
-/// Meters as millimeters with one standard deviation: `120.05 ± 0.12 mm`.
+/// Meters as millimeters with what holds 95 %, of one standard deviation: `120.05 ± 0.12 mm`.
 pub fn mm_with(length_m: f64, sigma_m: f64) -> String {
     Quantity::Length.text_with(length_m, sigma_m)
 }
@@ -128,13 +148,13 @@ pub fn whole_mm(length_m: f64) -> String {
     if length_m.is_finite() { format!("{number} mm") } else { number }
 }
 
-/// Meters as whole millimeters with one standard deviation: `14 ± 2 mm`.
+/// Meters as whole millimeters with what holds 95 %, of one standard deviation: `14 ± 2 mm`.
 pub fn whole_mm_with(length_m: f64, sigma_m: f64) -> String {
     if !(length_m.is_finite() && sigma_m.is_finite() && sigma_m != 0.0) {
         return whole_mm(length_m);
     }
     // What is known is never known without error: it is not rounded to nothing.
-    format!("{} ± {}", fixed(1e3 * length_m, 0), whole_mm(sigma_m.abs().max(1e-3)))
+    format!("{} ± {}", fixed(1e3 * length_m, 0), whole_mm((NORMAL_95 * sigma_m).abs().max(1e-3)))
 }
 
 /// A distance from the eyes as whole millimeters: `450 mm`; errors and positions are in [`mm`].
@@ -290,12 +310,12 @@ mod tests {
 
     #[test]
     fn uncertainty_decides_the_digits() {
-        assert_eq!(mm_with(0.120_053, 0.000_12), "120.05 ± 0.12 mm");
-        assert_eq!(mm_with(0.120_053, 0.012), "120 ± 12 mm");
-        assert_eq!(mm_with(0.120_053, 0.000_996), "120.1 ± 1.0 mm");
+        assert_eq!(mm_with(0.120_053, 0.000_12), "120.05 ± 0.24 mm");
+        assert_eq!(mm_with(0.120_053, 0.012), "120 ± 24 mm");
+        assert_eq!(mm_with(0.120_053, 0.000_51), "120.1 ± 1.0 mm");
         assert_eq!(mm_with(0.120_053, 0.0), "120 mm");
         assert_eq!(mm_with(0.120_053, f64::NAN), "120 mm");
-        assert_eq!(Quantity::Angle.text_with(0.1, 0.001), "5.730 ± 0.057°");
+        assert_eq!(Quantity::Angle.text_with(0.1, 0.001), "5.73 ± 0.11°");
         assert_eq!(mm_with(f64::NAN, 0.1), "—");
     }
 
@@ -331,7 +351,7 @@ mod tests {
     #[test]
     fn what_a_calibration_costs_is_in_whole_millimeters() {
         assert_eq!(whole_mm(0.0137), "14 mm");
-        assert_eq!(whole_mm_with(0.0137, 0.002), "14 ± 2 mm");
+        assert_eq!(whole_mm_with(0.0137, 0.002), "14 ± 4 mm");
         assert_eq!(whole_mm_with(0.0137, f64::NAN), "14 mm");
         assert_eq!(whole_mm_with(0.0137, 0.0), "14 mm");
         assert_eq!(whole_mm_with(0.0137, 2e-4), "14 ± 1 mm");

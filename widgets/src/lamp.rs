@@ -51,19 +51,31 @@ impl Health {
     }
 }
 
+/// How much of a lamp is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum LampWords {
+    /// Its sign; the rest is shown on hover.
+    Sign,
+    /// Its sign and its name.
+    Name,
+    /// All of it.
+    #[default]
+    All,
+}
+
 /// One lamp of the top line. A click opens what is behind it.
 pub struct Lamp<'a> {
     name: &'a str,
     value: &'a str,
     health: Health,
     reason: Option<&'a str>,
-    folded: bool,
+    words: LampWords,
 }
 
 impl<'a> Lamp<'a> {
     /// `name` in a word ("eyes"), `value` with its unit ("30.0 Hz").
     pub fn new(name: &'a str, value: &'a str, health: Health) -> Self {
-        Self { name, value, health, reason: None, folded: false }
+        Self { name, value, health, reason: None, words: LampWords::All }
     }
 
     /// Why it is not good and what to do, shown on hover.
@@ -72,24 +84,25 @@ impl<'a> Lamp<'a> {
         self
     }
 
-    /// Only its sign; name and value are shown on hover.
+    /// Less of it, where room is short; what is left out is shown on hover.
     #[must_use]
-    pub fn folded(mut self, folded: bool) -> Self {
-        self.folded = folded;
+    pub fn words(mut self, words: LampWords) -> Self {
+        self.words = words;
         self
     }
 
     /// How wide it will be, points.
     pub fn width(&self, ui: &Ui) -> f32 {
         let sign = space::S + GLYPH_SIZE + space::S;
-        if self.folded {
-            return sign;
-        }
         let body = theme::font(ui, &TextStyle::Body);
         let wide = |text: &str| {
             ui.painter().layout_no_wrap(text.to_owned(), body.clone(), egui::Color32::PLACEHOLDER).size().x
         };
-        sign + GAP + 2.0 + wide(self.name) + GAP + wide(self.value)
+        match self.words {
+            LampWords::Sign => sign,
+            LampWords::Name => sign + GAP + 2.0 + wide(self.name),
+            LampWords::All => sign + GAP + 2.0 + wide(self.name) + GAP + wide(self.value),
+        }
     }
 
     /// Draws it. The label for tests is `"{name} {value}"`.
@@ -115,13 +128,18 @@ impl<'a> Lamp<'a> {
             let (sign, color) = self.health.sign(tokens);
             glyph::paint(painter, egui::pos2(x + GLYPH_SIZE / 2.0, y), GLYPH_SIZE, sign, color);
             x += GLYPH_SIZE + GAP + 2.0;
-            for galley in [name, value].into_iter().filter(|_| !self.folded) {
+            let shown = match self.words {
+                LampWords::Sign => 0,
+                LampWords::Name => 1,
+                LampWords::All => 2,
+            };
+            for galley in [name, value].into_iter().take(shown) {
                 let width = galley.size().x;
                 painter.galley(egui::pos2(x, y - galley.size().y / 2.0), galley, tokens.text);
                 x += width + GAP;
             }
         }
-        let shown = if self.folded { format!(" {}", self.value) } else { String::new() };
+        let shown = if self.words == LampWords::All { String::new() } else { format!(" {}", self.value) };
         let mut hover = format!("{}{shown}: {}", self.name, self.health.word());
         if let Some(reason) = self.reason {
             hover.push_str(&format!("\n{reason}"));

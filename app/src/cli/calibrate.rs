@@ -57,7 +57,7 @@ fn stereo_text(report: &CalibrateReport) -> String {
          stereo rms       {} (left {}, right {})\n\
          on unseen pairs  {unseen}\n\
          epipolar         {}\n\
-         squares          {:.3} ± {:.3} mm\n\
+         squares          {:.3} mm, scattered by {:.3} mm\n\
          baseline         {:.3} mm\n",
         format::count(report.pairs_used, "pair"),
         report.pairs_found,
@@ -104,7 +104,7 @@ fn check_text(report: &CheckReport) -> String {
         "{} with the board in both eyes\n\
          reprojection     {}\n\
          epipolar         {}\n\
-         squares          {:.3} ± {:.3} mm\n",
+         squares          {:.3} mm, scattered by {:.3} mm\n",
         format::count(report.pairs, "pair"),
         format::px(report.reprojection_px),
         format::px(report.epipolar_px),

@@ -46,7 +46,7 @@ fn text(report: &CorrectReport) -> String {
 
 fn line(point: &CorrectedPoint) -> String {
     let place = format::position_mm([point.x_m, point.y_m, point.z_m]);
-    let sigma = point.sigma_m.map_or("not known".to_owned(), format::mm);
+    let sigma = point.sigma_m.map_or("not known".to_owned(), format::mm_known_to);
     let side = if point.inside { "inside" } else { "outside" };
     format!("  {}  {place}  ± {sigma}  {side}\n", format::pixel_position([point.u_px, point.v_px]))
 }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use plumbline_offline::{self as offline, CalibrationHealth, HealthArgs, HealthReport};
+use plumbline_widgets::format;
 
 use super::calibrate::say_notes;
 use super::output::Output;
@@ -51,7 +52,7 @@ fn line(title: &str, health: &CalibrationHealth) -> String {
         health.near_mm,
         health.middle_mm,
         health.far_mm,
-        health.far_sigma_mm,
+        format::NORMAL_95 * health.far_sigma_mm,
         health.turn_deg,
         health.epipolar_px
     )

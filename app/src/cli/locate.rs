@@ -125,9 +125,9 @@ fn line(point: &LocatedPoint) -> String {
         (Some(x), Some(y), Some(z), Some(sigma)) => {
             let robot = point.robot.map_or_else(String::new, |robot| {
                 let place = format::position_mm([robot.robot_x_m, robot.robot_y_m, robot.robot_z_m]);
-                format!("  robot {place} ± {}", format::mm(robot.robot_sigma_m))
+                format!("  robot {place} ± {}", format::mm_known_to(robot.robot_sigma_m))
             });
-            let place = format!("{} ± {}{robot}", format::position_mm([x, y, z]), format::mm(sigma));
+            let place = format!("{} ± {}{robot}", format::position_mm([x, y, z]), format::mm_known_to(sigma));
             let why = point.reason.as_deref().map_or_else(String::new, |why| format!("  {why}"));
             format!("  {at}  {place}{why}\n")
         }

@@ -54,8 +54,8 @@ fn coordinates(ui: &mut Ui, id: &str, meters: [f64; 3]) {
 }
 
 fn place_sigma(reading: &ProbeReading) -> KeyValue {
-    KeyValue::quantity("±", Quantity::Length, reading.sigma_m)
-        .help("One standard deviation along the worst direction, from the match, the calibrations, the effects of the model, and what nobody measured")
+    KeyValue::quantity("±", Quantity::Length, format::NORMAL_95 * reading.sigma_m)
+        .help("It lies within this with 95 % along the worst direction: from the match, the calibrations, the effects of the model, and what nobody measured")
 }
 
 fn image_rows(reading: &ProbeReading) -> Vec<KeyValue> {

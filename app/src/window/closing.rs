@@ -1,9 +1,9 @@
 //! What is asked before the window closes: whether what moves is held first, and whether what was solved and not
-//! accepted may be lost.
+//! accepted may be lost, and what a hand holds may be left to itself.
 
 use super::PlumblineWindow;
 use super::ask::Ask;
-use super::unaccepted::unaccepted;
+use super::unaccepted::lost_by_closing;
 
 impl PlumblineWindow {
     /// A window that closes would leave what moves to itself, and forget what was not accepted.
@@ -13,7 +13,7 @@ impl PlumblineWindow {
         }
         let ask = if self.moves() {
             Ask::CloseWhileMoving
-        } else if !unaccepted(&self.view).is_empty() {
+        } else if lost_by_closing(&self.view).is_some() {
             Ask::CloseUnaccepted
         } else {
             return;

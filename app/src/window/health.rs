@@ -4,7 +4,9 @@ use std::time::Duration;
 
 use egui::{Align, Button, Layout, Panel, Popup, Response, Ui};
 use jiff::Timestamp;
-use plumbline_engine::view::{Gate, GateState, Need, RecordingState, SourceStatus, StepState, Subject};
+use plumbline_engine::view::{
+    AddedEffect, Gate, GateState, Need, RecordingState, SourceStatus, StepState, Subject,
+};
 use plumbline_engine::{EyesCommand, View};
 use plumbline_model::duration;
 use plumbline_widgets::NumberField;
@@ -278,8 +280,19 @@ fn model_lamp(view: &View) -> Option<TopLamp> {
         }
     };
     // The lamp has little room; its screen says all of it.
-    let named = gap.model.effects.iter().filter(|effect| effect.is_named).count();
-    let value = if named > 0 { named.to_string() } else { "small shares".to_owned() };
+    let named = gap.model.effects.iter().filter(|effect| effect.is_named && !effect.is_left_out);
+    let kind = |effect: &'_ AddedEffect| effect.name.split('@').next().unwrap_or_default().to_owned();
+    let mut kinds: Vec<String> = named.map(kind).collect();
+    let count = kinds.len();
+    kinds.sort_unstable();
+    kinds.dedup();
+    // What has one name for every joint counts once, as where it was added.
+    let value = match count {
+        0 if gap.model.effects.iter().all(|effect| effect.is_left_out) => "left out".to_owned(),
+        0 => "small shares".to_owned(),
+        _ if kinds.len() < count => format::count(kinds.len(), "kind"),
+        _ => count.to_string(),
+    };
     Some(TopLamp { name: "Effects", value, health, reason, then: Then::Go(Screen::Gap) })
 }
 

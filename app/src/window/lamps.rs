@@ -1,8 +1,8 @@
-//! The lamps of the top line share the room that there is: where it is short, those that are well become
-//! dots, and the worst one keeps its words.
+//! The lamps of the top line share the room that there is: where it is short, those that are well lose
+//! their values, then their names, and the worst one keeps its words.
 
 use egui::{Popup, PopupCloseBehavior, Ui};
-use plumbline_widgets::lamp::{Health, Lamp};
+use plumbline_widgets::lamp::{Health, Lamp, LampWords};
 use plumbline_widgets::theme::space;
 
 use super::PlumblineWindow;
@@ -33,8 +33,8 @@ impl TopLamp {
         Lamp::new(self.name, &self.value, self.health).reason(self.reason.as_deref())
     }
 
-    fn show(&self, folded: bool, window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
-        let response = self.lamp().folded(folded).show(ui);
+    fn show(&self, words: LampWords, window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
+        let response = self.lamp().words(words).show(ui);
         match self.then {
             Then::Nothing => {}
             Then::Go(screen) => {
@@ -55,12 +55,12 @@ impl TopLamp {
 /// Draws them in order in the room that is left on this line.
 pub(super) fn show(lamps: &[TopLamp], window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
     ui.spacing_mut().item_spacing.x = space::XS;
-    let whole: Vec<f32> = lamps.iter().map(|lamp| lamp.lamp().width(ui) + space::XS).collect();
-    let dot = lamps.first().map_or(0.0, |lamp| lamp.lamp().folded(true).width(ui) + space::XS);
+    let width = |lamp: &TopLamp, words| lamp.lamp().words(words).width(ui) + space::XS;
+    let widths: Vec<[f32; 3]> = lamps.iter().map(|lamp| STAGES.map(|words| width(lamp, words))).collect();
     let urgency: Vec<u8> = lamps.iter().map(|lamp| urgency(lamp.health)).collect();
-    let folded = folded(&whole, dot, &urgency, ui.available_width());
-    for (lamp, folded) in lamps.iter().zip(folded) {
-        lamp.show(folded, window, ui, outbox);
+    let words = fitting(&widths, &urgency, ui.available_width());
+    for (lamp, words) in lamps.iter().zip(words) {
+        lamp.show(words, window, ui, outbox);
     }
 }
 
@@ -75,65 +75,78 @@ fn urgency(health: Health) -> u8 {
     }
 }
 
-/// Which lamps become dots so that all fit into `room`: the least urgent first, of these the last; one that
-/// is most urgent never does.
-fn folded(whole: &[f32], dot: f32, urgency: &[u8], room: f32) -> Vec<bool> {
-    let mut folded = vec![false; whole.len()];
-    let mut order: Vec<usize> = (0..whole.len()).rev().collect();
+/// From the least to all of a lamp.
+const STAGES: [LampWords; 3] = [LampWords::Sign, LampWords::Name, LampWords::All];
+
+/// How much of each lamp is drawn so that all fit into `room`, of their widths at each of [`STAGES`]: values go first,
+/// then names; of the least urgent first, of these of the last. One that is most urgent keeps all its words.
+fn fitting(widths: &[[f32; 3]], urgency: &[u8], room: f32) -> Vec<LampWords> {
+    let mut stages = vec![2; widths.len()];
+    let mut order: Vec<usize> = (0..widths.len()).rev().collect();
     order.sort_by_key(|i| urgency[*i]);
     // The first of the most urgent ones stands last in that order.
     order.pop();
-    let mut width: f32 = whole.iter().sum();
-    for &i in &order {
-        if width <= room {
-            break;
-        }
-        folded[i] = true;
-        width -= whole[i] - dot;
-    }
-    // What a long one that gave way left is room for shorter ones before it.
-    for i in order.into_iter().rev() {
-        let more = whole[i] - dot;
-        if folded[i] && width + more <= room {
-            folded[i] = false;
-            width += more;
+    let sum = |stages: &[usize]| stages.iter().zip(widths).map(|(stage, widths)| widths[*stage]).sum::<f32>();
+    for stage in [1, 0] {
+        for &i in &order {
+            if sum(&stages) > room {
+                stages[i] = stage;
+            }
         }
     }
-    folded
+    // What a long one that gave way left is room for shorter ones before it: names first.
+    for stage in [1, 2] {
+        for &i in order.iter().rev() {
+            let before = stages[i];
+            if before + 1 == stage {
+                stages[i] = stage;
+                if sum(&stages) > room {
+                    stages[i] = before;
+                }
+            }
+        }
+    }
+    stages.into_iter().map(|stage| STAGES[stage]).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use LampWords::{All, Name, Sign};
 
-    #[test]
-    fn what_fits_keeps_its_words() {
-        assert_eq!(folded(&[80.0, 90.0], 20.0, &[0, 0], 170.0), [false, false]);
-        assert!(folded(&[], 20.0, &[], 0.0).is_empty());
+    /// Lamps of these widths; a name takes half, a sign 20.
+    fn of(whole: &[f32], urgency: &[u8], room: f32) -> Vec<LampWords> {
+        let widths: Vec<[f32; 3]> = whole.iter().map(|whole| [20.0, whole / 2.0, *whole]).collect();
+        fitting(&widths, urgency, room)
     }
 
     #[test]
-    fn the_least_urgent_become_dots_first() {
+    fn what_fits_keeps_its_words() {
+        assert_eq!(of(&[80.0, 90.0], &[0, 0], 170.0), [All, All]);
+        assert!(of(&[], &[], 0.0).is_empty());
+    }
+
+    #[test]
+    fn the_least_urgent_give_way_first_their_values_before_their_names() {
         let whole = [100.0, 100.0, 100.0, 100.0];
         // Room for all but one: the last of those that are well gives way.
-        assert_eq!(folded(&whole, 20.0, &[0, 2, 0, 3], 330.0), [false, false, true, false]);
-        assert_eq!(folded(&whole, 20.0, &[0, 2, 0, 3], 250.0), [true, false, true, false]);
-        assert_eq!(folded(&whole, 20.0, &[0, 2, 0, 3], 170.0), [true, true, true, false]);
+        assert_eq!(of(&whole, &[0, 2, 0, 3], 350.0), [All, All, Name, All]);
+        assert_eq!(of(&whole, &[0, 2, 0, 3], 300.0), [Name, All, Name, All]);
+        assert_eq!(of(&whole, &[0, 2, 0, 3], 250.0), [Name, Name, Name, All]);
+        assert_eq!(of(&whole, &[0, 2, 0, 3], 190.0), [Sign, Name, Sign, All]);
+        assert_eq!(of(&whole, &[0, 2, 0, 3], 170.0), [Sign, Sign, Sign, All]);
     }
 
     #[test]
     fn what_a_long_one_leaves_is_used_by_a_short_one() {
-        // Only both together have not enough room.
-        assert_eq!(
-            folded(&[90.0, 40.0, 200.0, 30.0], 20.0, &[0, 0, 0, 3], 200.0),
-            [false, false, true, false]
-        );
-        assert_eq!(folded(&[200.0, 40.0, 30.0], 20.0, &[0, 0, 3], 100.0), [true, false, false]);
+        // The long one has no name of its own length here: what it leaves is room for the words of the other.
+        let widths = [[20.0, 90.0, 90.0], [20.0, 30.0, 40.0], [20.0, 200.0, 200.0], [20.0, 30.0, 30.0]];
+        assert_eq!(fitting(&widths, &[0, 0, 0, 3], 200.0), [All, All, Sign, All]);
     }
 
     #[test]
     fn the_worst_keeps_its_words_whatever_the_room() {
-        assert_eq!(folded(&[100.0, 100.0], 20.0, &[3, 0], 10.0), [false, true]);
-        assert_eq!(folded(&[100.0, 100.0], 20.0, &[2, 2], 10.0), [false, true]);
+        assert_eq!(of(&[100.0, 100.0], &[3, 0], 10.0), [All, Sign]);
+        assert_eq!(of(&[100.0, 100.0], &[2, 2], 10.0), [All, Sign]);
     }
 }

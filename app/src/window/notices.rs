@@ -11,7 +11,7 @@ use plumbline_widgets::theme::space;
 use super::saving::open_file;
 use super::sheet::sheet;
 use super::undo;
-use crate::operator::Outbox;
+use crate::operator::{Outbox, words};
 
 /// More new messages than this are not all put on screen.
 const MOST_AT_ONCE: usize = 2;
@@ -93,7 +93,7 @@ impl NoticeList {
     /// What STOP ended is no news any more once it is released.
     pub(super) fn see_stop(&mut self, stopped: bool) {
         if self.stopped && !stopped {
-            self.shown.dismiss_those_of("STOP was pressed");
+            self.shown.dismiss_those_of(words::robot::BY_STOP);
         }
         self.stopped = stopped;
     }

@@ -13,6 +13,7 @@ use super::PlumblineWindow;
 use crate::operator::guidance::{Guidance, failed_inside, guidance};
 use crate::operator::{
     Action, Course, GraspAction, Outbox, RobotAction, Screen, TouchAction, course, led_by, shortcut_text,
+    words,
 };
 
 const HEIGHT: f32 = 52.0;
@@ -255,6 +256,8 @@ pub(super) fn moves(view: &View) -> bool {
 
 fn failed_job(view: &View, is_of_screen: impl Fn(&JobView) -> bool) -> Option<(&JobView, &str)> {
     view.jobs.iter().rev().filter(|job| is_of_screen(job)).find_map(|job| match &job.state {
+        // Who pressed it knows, and what to do next stands here.
+        JobState::Failed { reason } if reason.starts_with(words::robot::BY_STOP) => None,
         JobState::Failed { reason } => Some((job, reason.as_str())),
         JobState::Panicked { message } => Some((job, message.as_str())),
         _ => None,

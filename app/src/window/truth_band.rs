@@ -61,6 +61,17 @@ fn figures(ui: &mut Ui, truth: &TruthView, room: f32) {
     }
 }
 
+/// What stands between a kind and its truth, where that is not plain.
+fn compared(of: TruthOf) -> Option<&'static str> {
+    match of {
+        TruthOf::Mount => Some(
+            "A board tells the neck's nod only together with that of the eyes: in the robot is what places rest on.",
+        ),
+        TruthOf::Zero | TruthOf::Axis => Some("What is left with the effects in use, play and sag among it."),
+        TruthOf::Toy | TruthOf::Finger => None,
+    }
+}
+
 /// Every difference.
 fn all(ui: &mut Ui, truth: &TruthView) {
     ui.set_min_width(320.0);
@@ -75,6 +86,9 @@ fn all(ui: &mut Ui, truth: &TruthView) {
             }
             ui.add_space(space::XS);
             ui.strong(of.name());
+            if let Some(compared) = compared(of) {
+                ui.label(compared);
+            }
             Grid::new(("truth", of.name())).num_columns(3).spacing([space::M, 2.0]).show(ui, |ui| {
                 for row in rows {
                     ui.label(&row.name);

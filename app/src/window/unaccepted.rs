@@ -37,15 +37,35 @@ fn are_models_open(view: &View) -> bool {
     })
 }
 
-/// The same in a sentence; `None`: nothing is lost.
+/// What a hand holds, and what becomes of it; `None`: nothing.
+pub(super) fn held(view: &View) -> Option<String> {
+    let held = view.grasp.held.as_ref()?;
+    Some(format!(
+        "The {} hand holds the {}: its fingers go on pressing, and nobody looks any more whether it slips. Put it \
+         down first.",
+        held.hand.name(),
+        held.object.to_lowercase()
+    ))
+}
+
+/// The same in sentences; `None`: nothing is lost, and nothing is held.
 pub(super) fn lost_by_closing(view: &View) -> Option<String> {
     let open = unaccepted(view);
-    (!open.is_empty()).then(|| format!("Solved and not accepted: {}. Closing loses that.", listed(&open)))
+    let lost = (!open.is_empty())
+        .then(|| format!("Solved and not accepted: {}. Closing loses that.", listed(&open)));
+    match (held(view), lost) {
+        (Some(held), Some(lost)) => Some(format!("{held} {lost}")),
+        (held, lost) => held.or(lost),
+    }
 }
 
 /// Asks whether to close although something was not accepted.
 pub(super) fn sheet_of_unaccepted(ui: &mut Ui, view: &View) -> Asked {
-    title(ui, "Close without accepting?", &lost_by_closing(view).unwrap_or_default());
+    let question = match held(view) {
+        Some(_) => "Close while a hand holds something?",
+        None => "Close without accepting?",
+    };
+    title(ui, question, &lost_by_closing(view).unwrap_or_default());
     match buttons_with_care(ui, "Close all the same") {
         Some(true) => Asked::Close,
         Some(false) => Asked::Closed,

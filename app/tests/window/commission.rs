@@ -287,7 +287,7 @@ fn the_tomato_is_laid_out_then_grasped_then_judged_by_a_person() {
 
     let tomato = |view: &mut View| {
         let toys = &mut Arc::make_mut(&mut view.twin).toys;
-        let place = plumbline_model::frame::Point::new(0.3, -0.1, 0.08);
+        let place = plumbline_model::frame::Point::new(0.31, -0.06, 0.08);
         toys.iter_mut().filter(|toy| toy.name == "tomato").for_each(|toy| toy.place = Some(place));
         Arc::make_mut(&mut view.grasp).target.class = Some("Tomato".to_owned());
     };

@@ -6,8 +6,8 @@ use egui::Key;
 use nalgebra::Vector3;
 use plumbline::{Screen, ThemeChoice, WindowSettings};
 use plumbline_engine::view::{
-    DriftCourse, DriftPoint, DriftVerdict, DriftView, GridCorrection, GridDoing, GridErrors, GridFigure,
-    GridPlace, GridRunView, GridView, Judged, PlaceError, SourceStatus, SourceView, StepState,
+    Anew, BeganAnew, DriftCourse, DriftPoint, DriftVerdict, DriftView, GridCorrection, GridDoing, GridErrors,
+    GridFigure, GridPlace, GridRunView, GridView, Judged, PlaceError, SourceStatus, SourceView, StepState,
 };
 use plumbline_engine::{Command, DriftCommand, GridCommand, View};
 use plumbline_model::Point;
@@ -97,11 +97,14 @@ fn every_state_says_what_it_is() {
     let now = std::time::Instant::now();
     let looks_at = [now - std::time::Duration::from_secs(70), now + std::time::Duration::from_secs(40)];
     let seldom = DriftView { looks_at: Some(looks_at), ..watching(Some(course(0.1))) };
+    let anew = Anew { why: BeganAnew::SwitchedOn, moved_before: None };
+    let anew = DriftView { anew: Some(anew), ..watching(Some(course(0.1))) };
     for (drift, words) in [
         (watching(None), "Looks for the first time"),
         (waits, "it looks again when it rests"),
         (failed, "Only 3 places"),
         (old, "Not watched any more: old."),
+        (anew, "Watching began anew when the cameras were switched on again"),
         (seldom, "The last look was 1 min ago. This computer is busy, so it looks seldom"),
         (watching(Some(course(0.1))), "Places stay where they were"),
         (watching(Some(course(20.0))), "Tomato: was moved by 20 mm"),
@@ -117,7 +120,7 @@ fn curves_and_map_tell_their_newest_values_to_who_cannot_see_them() {
     let window = fake.window(on(Screen::Drift));
     assert!(says(&window, "How far places are off, mm: near 7.8, middle 15.5, far 31.0"));
     assert!(shows(&window, "Drift over the table"));
-    assert!(says(&window, "Matches off"));
+    assert!(says(&window, "Off at the last look"));
 }
 
 /// Places of the grid that come out farther away than they are, by so many times what the paper saw.

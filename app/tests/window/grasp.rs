@@ -2,17 +2,17 @@
 
 use std::sync::Arc;
 
-use egui::{Modifiers, Pos2, vec2};
+use egui::{Key, Modifiers, Pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use nalgebra::Point3;
 use plumbline::{PlumblineWindow, Screen, WindowSettings};
 use plumbline_engine::view::{
     BetweenSteps, Connection, DetectView, Gate, GateState, GraspHand, GraspMethod, GraspPhase, GraspRun,
-    GraspStep, GraspView, LampState, MotionState, Need, ObjectView, RobotView, StepState, TouchPhase,
-    TouchView, ToyView, TwinView,
+    GraspStep, GraspView, HandWaits, LampState, MotionState, Need, ObjectView, RobotView, StepState,
+    TouchPhase, TouchView, ToyView, TwinView,
 };
-use plumbline_engine::{Command, Destination, GraspCommand, GraspTarget, RobotCommand, View};
+use plumbline_engine::{Command, Destination, GraspCommand, GraspTarget, HandStep, RobotCommand, View};
 use plumbline_model::frame::Point;
 use plumbline_widgets::scene3d::SceneCamera;
 
@@ -82,6 +82,31 @@ fn who_can_hold_nothing_of_what_is_there_is_told_so_and_not_ready() {
     assert!(!says_ready(vec![hand()], "Nothing to grasp is seen."));
     let unplaced = ObjectView { place: banana().place, ..tomato() };
     assert!(!says_ready(vec![unplaced, banana()], "Seen, but not where on the table: tomato."));
+}
+
+/// What is around something is let go, lifted off, and brought out of the picture before the next grasp.
+#[test]
+fn a_hand_that_was_stopped_is_led_home_step_by_step() {
+    for (waits, words, step) in [
+        (HandWaits::Around, "may be around something: open it first", HandStep::Open),
+        (HandWaits::Carries, "may carry something", HandStep::Place),
+        (HandWaits::Low, "lift it straight up", HandStep::Lift),
+        (HandWaits::InView, "stands in the picture", HandStep::Home),
+    ] {
+        let fake = Fake::over(with(GraspView { hand_waits: Some(waits), ..GraspView::default() }));
+        let mut window = on_grasp(&fake);
+        assert!(says(&window, words), "{words}");
+        window.run_steps(3);
+        window.key_press_modifiers(Modifiers::COMMAND, Key::Enter);
+        window.run_steps(2);
+        assert_eq!(fake.take_sent(), [Command::from(GraspCommand::Hand(step))]);
+    }
+    // Whatever shuts everything goes first.
+    let limp =
+        Gate { of: Need::Arm, state: GateState::Shut, text: "Joints of the arm do not hold.".to_owned() };
+    let grasp =
+        GraspView { hand_waits: Some(HandWaits::Around), gates: Arc::from([limp]), ..GraspView::default() };
+    assert!(!says(&on_grasp(&Fake::over(with(grasp))), "open it first"));
 }
 
 #[test]

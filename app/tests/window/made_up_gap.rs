@@ -142,6 +142,7 @@ pub fn added() -> GapView {
         title: effect.title.clone(),
         parameters: effect.parameters.iter().map(|p| (p.name.clone(), p.value, [p.low, p.high])).collect(),
         is_of_eyes: false,
+        is_left_out: false,
         moved_m: Some(effect.size_m),
     });
     let step = |title: &str, at: &str, errors| ModelStep {
@@ -165,6 +166,7 @@ pub fn added() -> GapView {
             ),
         ],
         can_undo: true,
+        can_redo: false,
     };
     let before = shown(sample::named(), "2026-09-14T11-02-00Z", "nominal");
     let before = Arc::new(ShownFinding { added: vec![true; 2], ..(*before).clone() });

@@ -181,7 +181,7 @@ fn methods_are_compared_in_figures_and_in_words() {
         assert!(labels.iter().any(|label| label.contains(" mm, ") && label.contains(" to ")), "{labels:?}");
     }
     assert!(says(&window, "No model: "));
-    assert!(says(&window, "noise floor of repeats: how far"), "the dashed line is explained");
+    assert!(says(&window, "noise of repeats: how far"), "the dashed line is explained");
 }
 
 #[test]

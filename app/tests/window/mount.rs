@@ -189,7 +189,7 @@ fn the_board_is_laid_first_where_there_is_none() {
 fn figures_come_with_their_uncertainty_and_left_out_views_with_the_reason() {
     let fake = Fake::over(ready(mount()));
     let window = fake.window(on_mount());
-    for words in ["1.20 ± 0.40", "−1.203 ± 0.034", "the head had not settled", "0.183 px"] {
+    for words in ["1.20 ± 0.78", "−1.203 ± 0.067", "the head had not settled", "0.183 px"] {
         assert!(says(&window, words), "{words}");
     }
 }

@@ -28,6 +28,7 @@ pub mod priority;
 pub mod robot;
 pub mod session;
 pub mod session_names;
+pub mod spread;
 pub mod stereo;
 pub mod touch_plan;
 pub mod touchscreen;

@@ -25,6 +25,11 @@ pub(super) fn labels(ui: &Ui, rect: Rect, view: &View, scene: &Scene, hidden: im
         let wanted = Rect::from_center_size(rect.min + place.to_vec2(), size);
         let Some(back) = room_for(wanted, &label.text, &taken) else { continue };
         taken.push((back, &label.text));
+        // What gave way says whose name it is.
+        if !back.contains(wanted.center()) {
+            let ink = color.gamma_multiply(0.6 * strength);
+            painter.line_segment([wanted.center(), back.clamp(wanted.center())], (1.0, ink));
+        }
         painter.rect_filled(back, 3.0, tokens.panel.gamma_multiply(0.7 * strength));
         painter.galley(back.min + vec2(4.0, 1.0), galley, color);
     }

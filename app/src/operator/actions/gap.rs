@@ -39,13 +39,15 @@ pub enum GapAction {
     Delete,
     /// Back to the model before.
     Undo,
+    /// Puts back what was taken back last.
+    Redo,
     /// Takes all effects out of the model.
     UseNominal,
 }
 
 impl GapAction {
     /// All of them, in the palette's order.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::ListSessions,
         Self::OpenSession,
         Self::CompareInUse,
@@ -59,6 +61,7 @@ impl GapAction {
         Self::ReportPdf,
         Self::Delete,
         Self::Undo,
+        Self::Redo,
         Self::UseNominal,
     ];
 
@@ -78,6 +81,7 @@ impl GapAction {
             Self::ReportPdf => "Report of the gap (PDF)…",
             Self::Delete => "Delete the shown finding",
             Self::Undo => "Undo the last change of the robot model",
+            Self::Redo => "Put back what was taken back of the robot model",
             Self::UseNominal => "Take all effects out of the robot model",
         }
     }
@@ -103,6 +107,7 @@ impl GapAction {
                 when(gap.shown.is_some(), "nothing was looked for yet")
             }
             Self::Undo => when(gap.model.can_undo, "there was no other model before"),
+            Self::Redo => when(gap.model.can_redo, "nothing was taken back that could be put back"),
             Self::UseNominal => when(!gap.model.effects.is_empty(), "the model has no effects"),
         }
     }
@@ -119,6 +124,7 @@ impl GapAction {
                 Self::Size => GapCommand::Add { effects: vec![] },
                 Self::Delete => GapCommand::Delete { id: view.gap.shown.as_ref()?.entry.id.clone() },
                 Self::Undo => GapCommand::Undo,
+                Self::Redo => GapCommand::Redo,
                 Self::UseNominal => GapCommand::UseNominal,
                 Self::OpenSession
                 | Self::NextExperiment

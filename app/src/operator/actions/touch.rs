@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use plumbline_engine::view::{ContactSource, TouchPhase};
+use plumbline_engine::view::{ContactSource, HandWaits, MotionState, TouchPhase};
 use plumbline_engine::{Command, TouchCommand, View};
 use plumbline_model::session::Touchscreen;
 use plumbline_model::touch_plan::{Finger, PlanOptions, Purpose, TouchArea};
@@ -257,6 +257,9 @@ fn arm_refusal(view: &View) -> Refusal {
     if view.robot.stopped {
         return Some("STOP is latched: release it first".into());
     }
+    if matches!(view.robot.motion, MotionState::Moving { .. }) {
+        return Some("the arm moves: wait until it stands".into());
+    }
     window_refusal(view)
 }
 
@@ -293,6 +296,9 @@ fn start_refusal(view: &View) -> Refusal {
 
 /// A finger that touches would drop what the hand holds, onto the screen.
 fn full_hand(view: &View) -> Refusal {
+    if matches!(view.grasp.hand_waits, Some(HandWaits::Around | HandWaits::Carries)) {
+        return Some("fingers may be around something: open the hand first, on the screen Grasp".into());
+    }
     let held = view.grasp.held.as_ref()?;
     let (hand, object) = (held.hand.name(), held.object.to_lowercase());
     Some(format!("the {hand} hand holds the {object}: put it down first, on the screen Grasp").into())

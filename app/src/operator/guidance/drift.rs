@@ -5,7 +5,7 @@ use plumbline_engine::view::{DriftMover, DriftVerdict};
 
 use super::sentence::{Guidance, say};
 use super::{eyes_off, source_trouble};
-use crate::operator::{Action, Screen};
+use crate::operator::{Action, Screen, words};
 
 pub(super) fn drift(view: &View) -> Guidance {
     let drift = &view.drift;
@@ -42,7 +42,10 @@ pub(super) fn drift(view: &View) -> Guidance {
         DriftVerdict::Warming { .. } => stop(say(course.sentence.clone()).warn()),
         _ => match &drift.waits_because {
             Some(why) => stop(say(why.clone())),
-            None => stop(say(course.sentence.clone())),
+            None => stop(match &drift.anew {
+                Some(anew) => say(words::drift::anew(anew)).warn(),
+                None => say(course.sentence.clone()),
+            }),
         },
     }
 }

@@ -1,8 +1,8 @@
 //! What to do next with grasping: one button, named by what it does.
 
 use plumbline_engine::view::{
-    Gate, GateState, GraspOutcome, GraspPhase, GraspRun, GraspView, InHand, JointView, LampState, Need,
-    SinceHeld, TrialsPhase,
+    Gate, GateState, GraspOutcome, GraspPhase, GraspRun, GraspView, HandWaits, InHand, JointView, LampState,
+    Need, SinceHeld, TrialsPhase,
 };
 use plumbline_engine::{HandStep, View};
 use plumbline_widgets::format;
@@ -42,6 +42,11 @@ fn idle(view: &View) -> Guidance {
     }
     if let Some(held) = &grasp.held {
         return in_hand(held, grasp.run.as_deref());
+    }
+    // All else that is shut goes before: nothing moves then.
+    let is_shut = grasp.shut().is_some_and(|gate| gate.of != Need::Hand);
+    if let Some(waits) = grasp.hand_waits.filter(|_| !is_shut) {
+        return of_waiting(waits);
     }
     if let Some(trouble) = grasp.trouble() {
         let limp = has_to_be_held(view);
@@ -87,7 +92,7 @@ fn idle(view: &View) -> Guidance {
             let said = grasp.run.as_deref().map(held_now).unwrap_or_default();
             say(said).warn().then(label, Action::Grasp(GraspAction::Grasp))
         }
-        Some(GraspOutcome::Failed { why, .. } | GraspOutcome::Refused { why }) => {
+        Some(GraspOutcome::Failed { why, .. } | GraspOutcome::Refused { why }) if !grasp.hand_moved => {
             say(closed(why)).warn().then(label, Action::Grasp(GraspAction::Grasp))
         }
         _ => {
@@ -99,6 +104,29 @@ fn idle(view: &View) -> Guidance {
             guidance.then(label, Action::Grasp(GraspAction::Grasp))
         }
     }
+}
+
+/// What is around something is opened, and lifted straight up; then the arm leaves the picture.
+pub(super) fn of_waiting(waits: HandWaits) -> Guidance {
+    let (sentence, step) = match waits {
+        HandWaits::Around => (
+            "The hand was stopped where its fingers may be around something: open it first. What it holds falls.",
+            HandStep::Open,
+        ),
+        HandWaits::Carries => (
+            "The fingers may carry something. Putting it down lowers the arm and opens the hand.",
+            HandStep::Place,
+        ),
+        HandWaits::Low => (
+            "The hand is open and low over the table: lift it straight up, before the arm goes anywhere.",
+            HandStep::Lift,
+        ),
+        HandWaits::InView => (
+            "The hand stands in the picture, where it hides what is grasped next: bring it home first.",
+            HandStep::Home,
+        ),
+    };
+    say(sentence).warn().then(step.title(), Action::Grasp(GraspAction::Hand(step)))
 }
 
 /// Whether nothing but joints that have to be taken hold of keeps the arm from grasping: every joint is known.

@@ -8,9 +8,9 @@ use super::sentence::{Guidance, say};
 use crate::operator::{Action, HandEyeAction, RobotAction, Screen};
 
 /// What moves, before it is pressed.
-const MOVES: &str = "Clear the table. The head turns, then each open hand is held over it at 12 places: about 2 min, nothing is touched. An arm that stands elsewhere goes home first.";
+const MOVES: &str = "Clear the table. The head turns, then each open hand is held over it at 12 places: 2 to 4 min, nothing is touched. An arm that stands elsewhere goes home first.";
 /// The same of a twin, which clears its table by itself.
-const MOVES_OF_THE_TWIN: &str = "The head turns, then each open hand is held over the table at 12 places: about 2 min, nothing is touched. An arm that stands elsewhere goes home first.";
+const MOVES_OF_THE_TWIN: &str = "The head turns, then each open hand is held over the table at 12 places: 2 to 4 min, nothing is touched. An arm that stands elsewhere goes home first.";
 
 pub(super) fn handeye(view: &View) -> Guidance {
     let handeye = &view.handeye;

@@ -86,7 +86,13 @@ pub fn failed_inside(view: &View, screen: Screen) -> Option<Guidance> {
 fn stopped(view: &View, screen: Screen) -> Option<Guidance> {
     let moves = matches!(
         screen,
-        Screen::Live | Screen::Mount | Screen::Touch | Screen::HandEye | Screen::Grasp | Screen::Robot
+        Screen::Commission
+            | Screen::Live
+            | Screen::Mount
+            | Screen::Touch
+            | Screen::HandEye
+            | Screen::Grasp
+            | Screen::Robot
     );
     let connected = view.robot.connection.is_connected();
     (moves && connected && view.robot.stopped).then(|| say(stopped_words(view)).warn())

@@ -9,7 +9,7 @@ use plumbline_widgets::format;
 use super::onward;
 use super::sentence::{Guidance, say};
 use crate::operator::words::mount;
-use crate::operator::words::robot::{is_close, is_limp, move_sentence, moved_name, silent_together};
+use crate::operator::words::robot::{BY_STOP, is_close, is_limp, move_sentence, moved_name, silent_together};
 use crate::operator::{Action, MountAction, RobotAction, Screen};
 
 /// Less than that beyond a limit nobody sees, rad.
@@ -131,7 +131,8 @@ pub(super) fn robot(view: &View) -> Guidance {
         return guidance;
     }
     match &robot.motion {
-        MotionState::Holding { why: Some(why) } => {
+        // Once it is released nobody has to be told what he did.
+        MotionState::Holding { why: Some(why) } if robot.stopped || !why.starts_with(BY_STOP) => {
             say(format!("Holds where it stands: {} Show a move, or jog.", closed(why))).warn()
         }
         _ => say("Drag a joint or choose a pose: it is shown first, and moves only when you say so."),

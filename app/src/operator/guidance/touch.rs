@@ -1,7 +1,8 @@
 //! What to do next with touching the screen: one button, named by what it does.
 
 use plumbline_engine::view::{
-    Figure, PlanView, StepState, Subject, TouchCounts, TouchFigures, TouchOutcome, TouchPhase, TouchView,
+    Figure, ModelStep, PlanView, StepState, Subject, TouchCounts, TouchFigures, TouchOutcome, TouchPhase,
+    TouchView,
 };
 use plumbline_engine::{Correction, View};
 use plumbline_model::touch_plan::{Finger, Purpose};
@@ -289,11 +290,19 @@ const MUCH_MORE: f64 = 1.3;
 /// Why the search for the effects in use said less, where it said much less, a sentence.
 fn beside_held_out(view: &View, mean_m: f64) -> Option<String> {
     let by_effects = view.touch.correct_with == Some(Correction::Effects);
-    let in_use = view.timeline.in_use.iter().find(|now| now.subject == Subject::Effects && by_effects)?;
-    let Some(Figure::Meters(said_m)) = in_use.figure else { return None };
+    let taken =
+        || view.gap.model.history.iter().enumerate().rev().filter(|(_, step)| !step.undone && by_effects);
+    // The last one may have tied the arms to the eyes, whose errors are of another kind.
+    let of_search = |step: &ModelStep| step.errors.filter(|_| !step.in_pixels && !step.is_rms);
+    let (place, [_, said_m, _]) = taken().find_map(|(place, step)| Some((place, of_search(step)?)))?;
+    let since = match taken().next() {
+        Some((last, _)) if last > place => ", and the arms were tied to the eyes since",
+        _ => "",
+    };
     (mean_m > MUCH_MORE * said_m).then(|| {
         format!(
-            " Held-out rows said {}: that was at places like those that were learned from, these are new ones.",
+            " Held-out rows said {}: that was at places like those that were learned from, these are new \
+             ones{since}.",
             format::mm(said_m)
         )
     })
@@ -305,7 +314,8 @@ pub fn check_in_words(view: &View) -> Option<String> {
     let options = &touch.plan.as_ref()?.options;
     let is_over = touch.phase == TouchPhase::Finished && options.purpose == Purpose::Check;
     let figures = touch.figures.filter(|_| is_over && !options.beside_described)?;
-    Some(capitalized(&lands(view, &figures)))
+    let beside = beside_held_out(view, figures.mean_m).unwrap_or_default();
+    Some(format!("{}{beside}", capitalized(&lands(view, &figures))))
 }
 
 /// A check on the timeline is the one that is shown when both miss by the same, m.
@@ -350,7 +360,8 @@ fn first(view: &View) -> Guidance {
 mod tests {
     use std::sync::Arc;
 
-    use plumbline_engine::view::{EntryKind, InUseNow, TimelineEntry, TimelineView};
+    use jiff::Timestamp;
+    use plumbline_engine::view::{EntryKind, GapModelView, GapView, TimelineEntry, TimelineView};
     use plumbline_model::robot::default_rig;
     use plumbline_model::touch_plan::{PlanOptions, TouchArea};
 
@@ -425,23 +436,32 @@ mod tests {
 
     #[test]
     fn a_check_that_misses_by_much_more_than_the_search_said_says_why() {
-        let said = |correct_with, mean_m| {
+        let said = |correct_with, mean_m, ties: bool| {
             let mut view = check(None, mean_m);
-            let effects = InUseNow {
-                subject: Subject::Effects,
-                title: "Elbow: zero".to_owned(),
-                figure: Some(Figure::Meters(0.8e-3)),
-                since: None,
-                entry: None,
-                against: String::new(),
+            let step = |after_m: f64, is_rms| ModelStep {
+                at: Timestamp::UNIX_EPOCH,
+                title: String::new(),
+                undone: false,
+                errors: Some([6e-3, after_m, 0.5e-3]),
+                in_pixels: false,
+                is_rms,
+                sessions: vec![],
             };
-            Arc::make_mut(&mut view.timeline).in_use = Arc::from([effects]);
+            let mut history = vec![step(0.8e-3, false)];
+            history.extend(ties.then(|| step(1.6e-3, true)));
+            let model = GapModelView { history, ..GapModelView::default() };
+            view.gap = Arc::new(GapView { model, ..GapView::default() });
             view.touch = Arc::new(TouchView { correct_with, ..TouchView::default() });
             beside_held_out(&view, mean_m)
         };
-        let much = said(Some(Correction::Effects), 1.67e-3);
-        assert!(much.is_some_and(|said| said.contains("Held-out rows said 0.80 mm")));
-        assert_eq!(said(Some(Correction::Effects), 0.9e-3), None, "about as much");
-        assert_eq!(said(None, 1.67e-3), None, "it was not corrected by them");
+        let much = said(Some(Correction::Effects), 1.67e-3, false).expect("twice as much");
+        assert!(much.contains("Held-out rows said 0.80 mm") && !much.contains("tied"), "{much}");
+        let tied = said(Some(Correction::Effects), 1.67e-3, true).expect("twice as much");
+        assert!(
+            tied.contains("Held-out rows said 0.80 mm") && tied.contains("were tied to the eyes since"),
+            "{tied}"
+        );
+        assert_eq!(said(Some(Correction::Effects), 0.9e-3, true), None, "about as much");
+        assert_eq!(said(None, 1.67e-3, false), None, "it was not corrected by them");
     }
 }

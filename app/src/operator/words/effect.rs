@@ -58,7 +58,8 @@ pub fn moved(effect: &AddedEffect) -> Option<String> {
 /// What the model in use has, in a sentence.
 pub fn in_use(model: &GapModelView) -> String {
     let (named, shares): (Vec<_>, Vec<_>) = model.effects.iter().partition(|effect| effect.is_named);
-    let mut told: Vec<String> = named.into_iter().map(|effect| effect.title.clone()).collect();
+    let named = named.into_iter().filter(|effect| !effect.is_left_out);
+    let mut told: Vec<String> = named.map(|effect| effect.title.clone()).collect();
     if !shares.is_empty() {
         told.push(format!("small shares of {}", plumbline_model::counted(shares.len(), "effect")));
     }
@@ -173,6 +174,7 @@ mod tests {
             title: "Fingertip: it rolls".to_owned(),
             parameters: vec![],
             is_of_eyes: false,
+            is_left_out: false,
             moved_m: Some(1.2e-4),
         };
         assert_eq!(moved(&effect).as_deref(), Some("small, moves the fingertip by 0.12 mm"));

@@ -139,11 +139,6 @@ pub fn on_held_out(finding: &Finding, on: &str) -> Option<String> {
     })
 }
 
-/// What sizes are told in multiples of.
-pub fn noise_name(finding: &Finding) -> &'static str {
-    if finding.comparison.is_noise_known() { "the noise" } else { "what the best model leaves" }
-}
-
 /// What stands for the noise in a picture of a finding.
 pub fn floor_name(finding: &Finding) -> &'static str {
     if finding.comparison.is_noise_known() { "noise alone" } else { "the best model leaves" }

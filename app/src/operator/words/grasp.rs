@@ -3,7 +3,7 @@
 use plumbline_engine::View;
 use plumbline_engine::view::{
     AttemptView, BetweenSteps, Connection, GraspHand, GraspMethod, GraspOutcome, GraspRun, GraspStep,
-    GraspView, HandChoice, SinceHeld, is_halted,
+    GraspView, HandChoice, SinceHeld, is_halted, is_unseen,
 };
 use plumbline_widgets::format;
 
@@ -175,6 +175,7 @@ pub fn result(attempt: &AttemptView) -> &'static str {
         (Some(false), _) => "not held, as you said",
         (None, Some(GraspOutcome::Success)) => "held, by fingers and eyes",
         (None, Some(outcome)) if is_halted(outcome) => "broken off",
+        (None, Some(outcome)) if is_unseen(outcome) => "not seen",
         (None, Some(GraspOutcome::Failed { .. })) => "not held",
         (None, Some(GraspOutcome::Refused { .. })) => "refused",
         (None, None) => "broken off",

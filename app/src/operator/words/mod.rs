@@ -1,5 +1,6 @@
 //! What several panels, the bottom line and the window say in the same words.
 
+pub mod drift;
 pub mod effect;
 pub mod eyes;
 pub mod gap;
@@ -31,6 +32,19 @@ pub fn sentence(text: &str) -> String {
     let begun = if is_name { text.to_owned() } else { capitalized(text) };
     let end = if begun.is_empty() || begun.ends_with(['.', '!', '?', '…']) { "" } else { "." };
     format!("{begun}{end}")
+}
+
+/// Of fewer repeats the gap, too, makes no noise.
+const FEW_REPEATS: usize = 10;
+
+/// What the spread of so many repeats is called; `None`: there are none.
+pub fn noise_of_repeats(repeats: Option<usize>) -> String {
+    match repeats {
+        Some(repeats) if repeats < FEW_REPEATS => {
+            format!("rough noise, of {}", plumbline_widgets::format::count(repeats, "repeat"))
+        }
+        _ => "noise floor of repeats".to_owned(),
+    }
 }
 
 /// That more doubts than the one that was said are listed, a sentence behind it; nothing where there are none.

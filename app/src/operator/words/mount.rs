@@ -6,11 +6,9 @@ use plumbline_widgets::format;
 use super::{more_doubts, sentence};
 
 /// What no view of a board tells, and where it is told.
-pub const NOT_IN_IT: &str = "Not in these ±: where the head looks straight ahead. No board tells the zero of the neck's turn, \
-     which is off by some degrees; the ± of places hold it until the hands are looked at, in step 6, Hand-eye.";
-
-/// Of a normal distribution 95 % lie within so many standard deviations.
-const NORMAL_95: f64 = 1.96;
+pub const NOT_IN_IT: &str = "As the neck counts its angles: the zero of its nod, which no board tells from a nod of the eyes, \
+     is in these numbers. Not in their ±: where the head looks straight ahead. No board tells the zero of the neck's \
+     turn, which is off by some degrees; the ± of places hold it until the hands are looked at, in step 6, Hand-eye.";
 
 /// Whether nothing speaks against it, and that as a sentence: "Good: …", or "Doubtful." and the first doubt. A remark on what
 /// the stated uncertainty holds already is none.
@@ -26,7 +24,7 @@ pub fn verdict(summary: &MountSummary) -> (bool, String) {
         n => format!("{} agree", format::count(n, "view")),
     };
     let error = format::px(summary.rms_px);
-    let known = format::degrees(NORMAL_95 * sd_rad);
+    let known = format::degrees(format::NORMAL_95 * sd_rad);
     let with = if held.is_empty() { "" } else { "; what is remarked below is in it" };
     let said = format!(
         "Good: {views} to {error}, and where the eyes look, as the neck counts its turn, is known to {known} (95 %{with})."

@@ -4,6 +4,9 @@ use plumbline_engine::view::{MotionState, Preview, RobotView};
 use plumbline_model::robot::{JointIndex, Rig};
 use plumbline_widgets::format;
 
+/// So begins every reason that is nothing but the operator's own STOP.
+pub const BY_STOP: &str = "STOP was pressed";
+
 /// "Move there: right elbow to 92°, 1.4 s": what moves, and how long it takes.
 pub fn moved_name(preview: &Preview) -> String {
     format!("Move there: {}, {}", preview.title, seconds(preview.duration.as_secs_f64()))

@@ -7,7 +7,6 @@ use plumbline_engine::view::{CommissionState, CommissionStep, CommissionStepView
 use plumbline_widgets::theme::{self, Role, space};
 
 use crate::operator::guidance::{commission_name, done_in_words};
-use crate::operator::words::clock;
 use crate::operator::{Course, Press, course};
 use crate::panels::{PanelContext, padded};
 
@@ -96,10 +95,7 @@ fn circle(ui: &Ui, center: egui::Pos2, view: &CommissionStepView) {
 /// The line below the name.
 fn below(view: &CommissionStepView, course: Option<&Course>) -> String {
     match (&view.state, course.map(|course| &course.press)) {
-        (CommissionState::Done(done), _) => {
-            let at = done.at.map_or_else(String::new, |at| format!(" · {}", clock(at)));
-            format!("{}{at}", done_in_words(&done.figure))
-        }
+        (CommissionState::Done(done), _) => done_in_words(&done.figure),
         (CommissionState::Now, Some(Press::Do { label, .. })) => format!("now: {}", small_first(label)),
         (CommissionState::Now, Some(Press::Wait { why, .. })) => format!("now: {}", small_first(why)),
         (CommissionState::Now, None) | (CommissionState::Waits(_), _) => what_for(view.step).to_owned(),

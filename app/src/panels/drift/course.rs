@@ -7,6 +7,7 @@ use plumbline_widgets::theme::{self, Role, space};
 
 use super::chart::{Chart, Line};
 use super::{explain, nothing_yet, old};
+use crate::operator::words;
 use crate::panels::{PanelContext, padded};
 
 /// Colors of the rows of the table, from near to far.
@@ -60,6 +61,9 @@ fn headline(ui: &mut Ui, course: &DriftCourse, view: &View) {
         _ => tokens.text_strong,
     };
     ui.label(RichText::new(&course.sentence).color(color));
+    if let Some(anew) = &view.drift.anew {
+        ui.label(RichText::new(words::drift::anew(anew)).color(Role::Warning.color(tokens)));
+    }
     if !view.drift.is_watching {
         ui.label(theme::small(ui, "Not watched any more: old."));
     } else if let Some(old) = old(view) {

@@ -22,11 +22,11 @@ fn moved(ui: &mut Ui, view: &View) {
         ui.label(theme::weak(ui, text));
         return;
     };
-    group_heading(ui, "Off at the far end");
+    group_heading(ui, "Moved at the far end");
     let far_m = course.points.last().map_or(0.0, |point| point.off_m[2]);
     let (when, role) = match super::age(view).filter(|age| view.drift.is_watching && *age <= super::OLD) {
-        Some(_) => ("now", Role::Measured),
-        None => ("at the last look", Role::Weak),
+        Some(_) => ("since watching began, now", Role::Measured),
+        None => ("since watching began, at the last look", Role::Weak),
     };
     big_figure(ui, when, &format::mm(far_m), role);
     if let Some(age) = super::age(view).filter(|age| *age > super::OLD) {
@@ -45,7 +45,7 @@ fn moved(ui: &mut Ui, view: &View) {
     }
     if let Some(vertical_px) = course.epipolar_px {
         group_heading(ui, "Between the eyes");
-        let row = KeyValue::text("Matches off", format::px(vertical_px))
+        let row = KeyValue::text("Off at the last look", format::px(vertical_px))
             .help("How far matched places leave the epipolar lines of the calibration in use. They are matched some ten times less finely than corners of a board");
         key_value_grid(ui, "drift between the eyes", &[row]);
     }

@@ -10,7 +10,7 @@ use plumbline_widgets::{format, probability, steady};
 
 use super::parts::finding;
 use super::state::Sort;
-use crate::operator::snapshot::gap::Candidate;
+use crate::operator::snapshot::gap::{Candidate, Finding};
 use crate::operator::words::gap as words;
 use crate::operator::words::{capitalized, effect};
 use crate::panels::{PanelContext, padded};
@@ -36,8 +36,8 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             choice(ui, "Sorted by", &mut cx.state.gap.sort, &options);
         });
         if words::is_unsure(&shown.finding) {
-            let text = "The probability here is among the names of the library alone. On the cards it also counts that \
-                        something else may be at work.";
+            let text = "Of these: the share of a name among those of the library alone. How sure it is stands on its card, which also \
+                        counts that something else may be at work.";
             ui.label(theme::small(ui, text));
         }
         match cx.state.gap.sort {
@@ -53,7 +53,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             places.get(&(candidate.id.clone(), candidate.site.clone())).copied()
         });
         ui.add_space(space::XS);
-        let area = table(ui, &candidates, &shown.finding.candidates);
+        let area = table(ui, &candidates, &shown.finding);
         steady::keep(ui, list, order, area);
     });
 }
@@ -62,15 +62,17 @@ const CANDIDATE_ROW: f32 = 20.0;
 /// Narrower than this there is room for names and probabilities only.
 const NARROW: f32 = 400.0;
 
-/// `all` gives names to what a candidate trades against. Where its rows are drawn.
-fn table(ui: &mut Ui, candidates: &[&Candidate], all: &[Candidate]) -> egui::Rect {
+/// All candidates of the finding give names to what one trades against. Where its rows are drawn.
+fn table(ui: &mut Ui, candidates: &[&Candidate], finding: &Finding) -> egui::Rect {
+    let all = &finding.candidates;
     let width = ui.available_width();
     // Where there is no room for all, the name counts for more; what is left out stands where a row is pointed at.
     let columns = match width < NARROW {
         true => [width - 68.0, 68.0, 0.0, 0.0],
         false => [width - 198.0, 68.0, 54.0, 76.0],
     };
-    let header = ["", "probability", "size, σ", "the data"];
+    let probability = if words::is_unsure(finding) { "of these" } else { "probability" };
+    let header = ["", probability, "size, σ", "the data"];
     candidate_row(ui, columns, header.map(|text| (text.to_owned(), true)), None);
     let area = ScrollArea::vertical().auto_shrink(false);
     let shown = area.show_rows(ui, CANDIDATE_ROW, candidates.len(), |ui, shown| {

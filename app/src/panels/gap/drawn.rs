@@ -7,7 +7,7 @@ use plumbline_widgets::format;
 use plumbline_widgets::table_map::{BeforeAfter, Outline, Place, TableMark, TableScene};
 use plumbline_widgets::theme::Role;
 
-use crate::operator::snapshot::gap::Residual;
+use crate::operator::snapshot::gap::{Residual, ShownUnit};
 use crate::panels::arrows::{Errors, arrow_scale};
 
 /// Around everything that is shown, m.
@@ -39,11 +39,17 @@ impl Drawn {
         let mean = |of: &dyn Fn(&Residual) -> [f64; 3]| {
             kept.iter().map(|row| plane(of(row))).sum::<f64>() / kept.len().max(1) as f64
         };
+        // Along the glass, where the finding tells it: on the map it is seen from above, which is a little less.
+        let told = &shown.finding.shown;
+        let mean_m = match told.unit {
+            ShownUnit::Meter => [told.before, told.after],
+            ShownUnit::Pixel => [mean(&|row| row.before_m), mean(&|row| row.after_m)],
+        };
         Self {
             x_m: range(0),
             y_m: range(1),
             outliers: rows.len() - kept.len(),
-            mean_m: [mean(&|row| row.before_m), mean(&|row| row.after_m)],
+            mean_m,
             screen_m,
             of: shown.clone(),
         }

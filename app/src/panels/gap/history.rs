@@ -26,6 +26,9 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
                 if gap.model.can_undo {
                     undo_button(ui, cx, Subject::Effects);
                 }
+                if gap.model.can_redo {
+                    action_button(ui, cx, GapAction::Redo, "Put back");
+                }
                 if !gap.model.effects.is_empty() {
                     action_button(ui, cx, GapAction::Prove, "Prove it");
                     action_button(ui, cx, GapAction::UseNominal, "Take all effects out");
@@ -84,6 +87,9 @@ fn sizes(ui: &mut Ui, effect: &AddedEffect) {
         .map(|(name, value, _)| format!("{} {}", parameter::words(name), parameter::value(name, *value)))
         .collect();
     sizes.extend(moved(effect));
+    if effect.is_left_out {
+        sizes.push("not in force: found with other eyes".to_owned());
+    }
     let title = capitalized(&effect.title);
     let text = if sizes.is_empty() { title } else { format!("{title}: {}", sizes.join(", ")) };
     ui.label(text);

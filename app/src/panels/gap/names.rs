@@ -154,10 +154,12 @@ fn card(ui: &mut Ui, cx: &mut PanelContext<'_>, shown: &ShownFinding, i: usize) 
         let is_weak = shown.finding.verdict == Verdict::NotInLibrary || shown.finding.many.is_some();
         let role = if is_weak { Role::Weak } else { Role::Predicted };
         if effect.class.len() > 1 {
+            ui.label(theme::small(ui, "One of the names below is right with"));
             probability_bar(ui, &format!("{}, class", effect.title), effect.class_probability, role)
                 .on_hover_text("Probability that it is one of the names below");
             class(ui, effect, role);
         } else {
+            ui.label(theme::small(ui, "This name is right with"));
             probability_bar(ui, &effect.title, effect.probability, role)
                 .on_hover_text("Probability that this name is right");
         }

@@ -14,7 +14,7 @@ use plumbline_widgets::theme::{self, Role, space};
 use super::parts::finding;
 use super::points::{Along, points};
 use crate::operator::GapAction;
-use crate::operator::snapshot::gap::{Finding, Shown, Verdict};
+use crate::operator::snapshot::gap::{Finding, Shown, Verdict, What};
 use crate::operator::words::gap as words;
 use crate::panels::parts::action_button;
 use crate::panels::{PanelContext, padded};
@@ -94,6 +94,9 @@ fn bars(ui: &mut Ui, cx: &PanelContext<'_>, shown: &ShownFinding) {
             format::percent(held_out.inside_95),
         )
     };
+    if shown.finding.comparison.kinds.iter().any(|kind| kind.what == What::Touch) {
+        said.push_str(" Before, too, the screen lies where it fits these touches best.");
+    }
     if let Some(unseen) = &held_out.unseen {
         said.push_str(&format!(
             " Unseen: {}, {} held out as a whole; {}: {}.",

@@ -18,6 +18,8 @@ type Row = [RichText; 3];
 pub fn sizes(ui: &mut Ui, effect: &NamedEffect, finding: &Finding) {
     let (told, zero): (Vec<_>, Vec<_>) = effect.parameters.iter().partition(|found| found.is_told());
     let not_told = effect_words::not_told(told.len(), zero.len());
+    // Ranges are those of a model that has what is named, and no more.
+    let sure = if words::is_unsure(finding) { "95 % if no more is off" } else { "95 %" };
     let mut rows: Vec<Row> = told
         .into_iter()
         .map(|found| {
@@ -29,14 +31,19 @@ pub fn sizes(ui: &mut Ui, effect: &NamedEffect, finding: &Finding) {
                 None => {
                     let interval = parameter::interval(&found.name, found.low, found.high);
                     let value = theme::strong(ui, parameter::value(&found.name, found.value));
-                    [name, value, theme::weak(ui, format!("{interval} (95 %)"))]
+                    [name, value, theme::weak(ui, format!("{interval} ({sure})"))]
                 }
             }
         })
         .collect();
     if effect.size_m > 0.0 {
-        let sigmas = format::significant(effect.size_sigmas, 2);
-        let noise = theme::weak(ui, format!("rms, {sigmas} × {}", words::noise_name(finding)));
+        // With an unknown noise nothing is a multiple of it.
+        let noise = if finding.comparison.is_noise_known() {
+            format!("rms, {} × the noise", format::significant(effect.size_sigmas, 2))
+        } else {
+            "rms".to_owned()
+        };
+        let noise = theme::weak(ui, noise);
         rows.push([
             theme::weak(ui, "does"),
             RichText::new(words::error(&finding.shown, effect.size_m)),

@@ -1,7 +1,7 @@
 //! What became of the attempt, large and plain, and what the operator saw of it.
 
 use egui::{RichText, TextStyle, Ui};
-use plumbline_engine::view::{GraspOutcome, GraspPhase, GraspRun, SinceHeld, is_halted};
+use plumbline_engine::view::{GraspOutcome, GraspPhase, GraspRun, SinceHeld, is_halted, is_unseen};
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, Role, space};
 
@@ -33,6 +33,9 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, run: &GraspRun) {
         (None, GraspOutcome::Failed { why, .. }) if is_halted(outcome) => {
             (Role::Warning, "Broken off.".to_owned(), Some(why))
         }
+        (None, GraspOutcome::Failed { why, .. }) if is_unseen(outcome) => {
+            (Role::Warning, "Not grasped.".to_owned(), Some(why))
+        }
         (None, GraspOutcome::Failed { why, .. }) => (Role::Warning, "Not held.".to_owned(), Some(why)),
         (None, GraspOutcome::Refused { why }) => (Role::Warning, "Not grasped.".to_owned(), Some(why)),
     };
@@ -51,7 +54,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, run: &GraspRun) {
     if !facts.is_empty() {
         ui.label(theme::small(ui, closed(&facts.join(", "))));
     }
-    if matches!(outcome, GraspOutcome::Refused { .. }) {
+    if matches!(outcome, GraspOutcome::Refused { .. }) || is_unseen(outcome) {
         return;
     }
     ui.add_space(space::XS);

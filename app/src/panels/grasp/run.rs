@@ -131,8 +131,9 @@ fn gates(ui: &mut Ui, view: &View) {
 fn planned(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let Some(plan) = cx.view.grasp.plan.clone() else { return };
     let [x_m, y_m] = plan.at_m;
-    let sigma =
-        plan.sigma_m.map_or_else(String::new, |sigma_m| format!(" (known to {})", format::mm(sigma_m)));
+    let sigma = plan
+        .sigma_m
+        .map_or_else(String::new, |sigma_m| format!(" (known to {})", format::mm_known_to(sigma_m)));
     ui.label(theme::strong(
         ui,
         format!("{} at x {}, y {}{sigma}", plan.object, format::mm(x_m), format::mm(y_m)),

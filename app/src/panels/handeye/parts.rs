@@ -5,18 +5,21 @@ use plumbline_engine::view::{
     GraspHand, HandEyePart, HandEyeSeen, HandEyeSummary, HandEyeView, HandFigures, HandOutcome, PartState,
 };
 use plumbline_widgets::empty::{EmptyState, Message};
-use plumbline_widgets::format;
+use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::key_value::big_figure;
 use plumbline_widgets::theme::{self, Role, space};
 
-use crate::operator::HandEyeAction;
 use crate::operator::words::clock;
+use crate::operator::{GapAction, HandEyeAction};
 use crate::panels::parts::{action_button, warning};
 use crate::panels::{PanelContext, padded};
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let view = cx.view.handeye.clone();
     let summary = view.proposal.as_ref().or(view.in_use.as_ref());
+    if summary.is_none() && view.parts.is_empty() && view.stale.is_some() && cx.view.gap.model.can_redo {
+        return padded(ui, |ui| taken_back(ui, cx));
+    }
     if summary.is_none() && view.parts.is_empty() {
         EmptyState::empty(Message::new(
             "The arms are not tied to the eyes",
@@ -41,6 +44,15 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             });
         });
     });
+}
+
+/// What was learned of the hands is not in the model any more, and may be put back.
+fn taken_back(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    if let Some(why) = &cx.view.handeye.stale {
+        warning(ui, why);
+    }
+    ui.label(theme::weak(ui, "What was taken back of the robot model last can be put back; nothing moves."));
+    action_button(ui, cx, GapAction::Redo, "Put back");
 }
 
 /// One line per part, while they are looked at, or were until it was broken off.
@@ -69,10 +81,10 @@ fn came_of_it(ui: &mut Ui, view: &HandEyeView, summary: &HandEyeSummary) {
         if let Some((hand, [before_m, after_m])) = summary.worse() {
             let role = if after_m > before_m { Role::Warning } else { Role::Accepted };
             big_figure(ui, &format!("{} hand, {what}", hand.name()), &format::mm(after_m), role);
-            big_figure(ui, "before", &format::mm(before_m), Role::Ink);
+            big_figure(ui, &format!("{} hand, before", hand.name()), &format::mm(before_m), Role::Ink);
         }
     });
-    let worse = if summary.hands.len() > 1 { ", of both hands the worse one" } else { "" };
+    let worse = if summary.hands.len() > 1 { ", of both hands the one that is worse now" } else { "" };
     let said = format!(
         "How far beside its arm it is seen, rms on looks that were not used{worse}. Looked at {}.",
         clock(summary.at)
@@ -118,9 +130,8 @@ fn words(seen: &HandEyeSeen) -> (String, Role) {
     let unseen = |what: &str| (what.to_owned(), Role::Warning);
     match seen {
         HandEyeSeen::Body(Some(body)) => {
-            let (off, sd) = (body.neck_rad.to_degrees(), body.neck_sd_rad.to_degrees());
-            let (off, sd) = (format::fixed(off, 2), format::fixed(sd, 2));
-            (format!("the neck's turn is off by {off} ± {sd}°"), Role::Ink)
+            let off = Quantity::Angle.text_with(body.neck_rad, body.neck_sd_rad);
+            (format!("the neck's turn is off by {off}"), Role::Ink)
         }
         HandEyeSeen::Body(None) => unseen("its edges are not seen: the neck's zero stays less sure"),
         HandEyeSeen::Screen(Some(screen)) => {
@@ -128,8 +139,8 @@ fn words(seen: &HandEyeSeen) -> (String, Role) {
         }
         HandEyeSeen::Screen(None) => unseen("its edges are not seen: clear the table, and look again"),
         HandEyeSeen::Table(Some(table)) => {
-            let (over, sd) = (format::fixed(1e3 * table.glass_over_m, 1), format::fixed(1e3 * table.sd_m, 1));
-            (format!("the glass lies {over} ± {sd} mm over it"), Role::Ink)
+            let over = format::mm_with(table.glass_over_m, table.sd_m);
+            (format!("the glass lies {over} over it"), Role::Ink)
         }
         HandEyeSeen::Table(None) => {
             ("too even to be measured: the glass is taken to lie 2 mm over it".to_owned(), Role::Weak)

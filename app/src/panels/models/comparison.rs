@@ -20,7 +20,7 @@ use crate::panels::{PanelContext, padded};
 /// The line of the spread of repeats. What it is an rms of stands beside means, so it says so.
 const REPEATS: &str = "repeats, rms";
 /// What that line is, a sentence.
-const REPEATS_HELP: &str = "The dashed line is the noise floor of repeats: how far touches of the same target \
+const REPEATS_HELP: &str = "The dashed line is the noise of repeats: how far touches of the same target \
      spread about their mean, rms in the plane.";
 
 /// Less is nothing, m.

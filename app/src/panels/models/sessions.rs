@@ -11,7 +11,7 @@ use plumbline_widgets::theme::{self, Role, space};
 
 use crate::operator::ModelsAction;
 use crate::operator::snapshot::models::{Repeats, TouchData};
-use crate::operator::words::clock;
+use crate::operator::words::{clock, noise_of_repeats};
 use crate::panels::PanelContext;
 use crate::panels::parts::action_button;
 
@@ -127,8 +127,12 @@ fn has(ui: &mut Ui, data: &TouchData, noise: Option<&Repeats>) {
             KeyValue::text("touches to learn from", data.len().to_string()),
             KeyValue::text("sets", sets)
                 .help("Touches of one set are held out together: a line, a grid, a day."),
-            KeyValue::optional("noise floor of repeats", Quantity::Length, noise.map(|noise| noise.rms_2d_m))
-                .help(noise_help),
+            KeyValue::optional(
+                noise_of_repeats(noise.map(|noise| noise.touches)),
+                Quantity::Length,
+                noise.map(|noise| noise.rms_2d_m),
+            )
+            .help(noise_help),
         ],
     );
     for sentence in &data.left_out {

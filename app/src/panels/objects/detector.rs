@@ -4,6 +4,7 @@ use egui::{RichText, Ui};
 use plumbline_engine::view::{DetectView, DetectorFacts, DetectorState};
 use plumbline_engine::{DetectCommand, DetectorChoice, Provider};
 use plumbline_model::{ClassIndex, ClassNames};
+use plumbline_widgets::class_words;
 use plumbline_widgets::theme::{self, Role, space};
 
 use super::drawing::DOUBT;
@@ -15,7 +16,8 @@ pub fn state(ui: &mut Ui, detect: &DetectView, outbox: &mut Outbox) {
     match &detect.detector {
         DetectorState::Ready(facts) => {
             ui.label(theme::strong(ui, &facts.name));
-            ui.label(theme::small(ui, facts.names.to_string()));
+            let names: Vec<&str> = facts.names.iter().map(|(_, name)| class_words(name)).collect();
+            ui.label(theme::small(ui, names.join(", ")));
             names_differ(ui, facts);
             for remark in &facts.remarks {
                 ui.label(RichText::new(remark).color(DOUBT.color(tokens)));

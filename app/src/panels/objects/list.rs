@@ -99,12 +99,11 @@ fn whereabouts(view: &View, object: &ObjectView) -> String {
         Ok(place) => {
             let at = place.point_in_robot.coords;
             let number = |m: f64| format::fixed(Quantity::Length.on_screen(m), 0);
-            let worst_m = place.sigma_m.iter().copied().fold(0.0, f64::max);
             let at = format!("{}, {}, {}", number(at.x), number(at.y), number(at.z));
             // What speaks against the place is in no ±.
             match is_doubtful(view, object) {
                 true => format!("{at} mm, doubtful"),
-                false => format!("{at} ± {} mm", number(worst_m)),
+                false => format!("{at} ± {} mm", number(place.within_m())),
             }
         }
         Err(_) => match (object.left.is_some(), object.right.is_some()) {

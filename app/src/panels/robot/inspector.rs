@@ -74,8 +74,10 @@ fn shown_move(ui: &mut Ui, view: &View, outbox: &mut Outbox) {
     }
     rows.push(KeyValue::text("Robot", &*preview.model).help("The model that the move was found with"));
     if let Some(sigma_m) = preview.tip_sigma_m.filter(|sigma_m| *sigma_m > 0.0) {
-        let help = "One standard deviation of the tip's place along the worst direction, by what is not known of the effects";
-        rows.push(KeyValue::quantity("Tip to within", Quantity::Length, sigma_m).help(help));
+        let help = "With 95 %, along the worst direction, by what is not known of the effects";
+        rows.push(
+            KeyValue::quantity("Tip to within", Quantity::Length, format::NORMAL_95 * sigma_m).help(help),
+        );
     }
     match &preview.path {
         Ok(check) => {

@@ -125,6 +125,9 @@ pub fn cannot_jog(robot: &RobotView) -> Option<Cow<'static, str>> {
     }
     let rig = robot.rig.as_ref()?;
     let arm = rig.arms.iter().find(|arm| arm.tips.iter().any(|tip| tip.link == robot.tip))?;
+    if robot.joints.iter().any(|joint| arm.joints.contains(&joint.joint) && joint.has_to_be_held()) {
+        return Some("joints of the arm are limp: hold all joints first".into());
+    }
     let mut joints = arm.joints.iter().chain(&arm.hand);
     let unknown = joints.find(|joint| robot.unknown.contains(joint))?;
     let title = rig.servo_of(*unknown).map_or("one of its joints", |servo| &servo.title);

@@ -108,7 +108,7 @@ fn result(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     }
     let Some(plan) = touch.plan.clone() else { return };
     figures(ui, &plan, touch.counts.planned);
-    reach(ui, &plan);
+    reach(ui, &plan, touch.phase == TouchPhase::Finished);
     if let Some(score) = &plan.score {
         score::show(ui, score);
     }
@@ -132,14 +132,15 @@ fn figures(ui: &mut Ui, plan: &PlanView, planned: usize) {
     });
 }
 
-fn reach(ui: &mut Ui, plan: &PlanView) {
+fn reach(ui: &mut Ui, plan: &PlanView, is_over: bool) {
     for (why, count) in &plan.refusals {
         warning(ui, &format!("{count} left out: {why}"));
     }
     if plan.reachable > 0 {
         ui.label(theme::weak(ui, what_moves(plan)));
         if !plan.model.is_empty() {
-            ui.label(theme::weak(ui, format!("Corrected by the robot {}.", plan.model)));
+            let when = if is_over { "Was corrected" } else { "Corrected" };
+            ui.label(theme::weak(ui, format!("{when} by the robot {}.", plan.model)));
         }
         if plan.options.beside_described {
             ui.label(theme::weak(ui, "Every place twice: by the robot as described, then with the effects."));

@@ -13,6 +13,7 @@ use plumbline_widgets::theme::{self, Role, space};
 use super::parts::error_length_m;
 use super::words;
 use crate::operator::guidance::{check_in_words, go_on, is_screen_to_be_decided};
+use crate::operator::words::noise_of_repeats;
 use crate::operator::words::proof::Proof;
 use crate::operator::words::robot::is_limp;
 use crate::operator::{Action, RobotAction, Screen, TouchAction, done_of, is_under_way, wanted};
@@ -194,9 +195,9 @@ fn proven(ui: &mut Ui, touch: &TouchView) {
     let half = |figures: &TouchFigures| 0.5 * (figures.mean_interval_m[1] - figures.mean_interval_m[0]);
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(space::L, space::XS);
-        let before = format::mm_with(described.mean_m, half(described));
+        let before = format::mm_within(described.mean_m, half(described));
         big_figure(ui, "as described, ± 95 %", &before, Role::Ink);
-        let after = format::mm_with(found.mean_m, half(found));
+        let after = format::mm_within(found.mean_m, half(found));
         big_figure(ui, "with the effects, ± 95 %", &after, Role::HeldOut);
     });
     // While touches are still to come nothing is proven.
@@ -208,8 +209,6 @@ fn proven(ui: &mut Ui, touch: &TouchView) {
 
 /// Less than that no touchscreen tells, m.
 const UNSEEN_M: f64 = 5e-5;
-/// Of fewer repeats the gap, too, makes no noise.
-const FEW_REPEATS: usize = 10;
 
 fn figures(ui: &mut Ui, found: &TouchFigures) {
     let [low, high] = found.mean_interval_m;
@@ -218,7 +217,7 @@ fn figures(ui: &mut Ui, found: &TouchFigures) {
         ui.spacing_mut().item_spacing = vec2(space::L, space::XS);
         // What reaches down to zero has no ± that means something.
         let (label, mean) = if low > 0.0 {
-            ("mean error, ± 95 %", format::mm_with(found.mean_m, (high - low) / 2.0))
+            ("mean error, ± 95 %", format::mm_within(found.mean_m, (high - low) / 2.0))
         } else {
             ("mean error, too scattered for a ±", format::mm(found.mean_m))
         };
@@ -242,10 +241,7 @@ fn figures(ui: &mut Ui, found: &TouchFigures) {
         };
         let label = match found.noise_m {
             None => "noise floor: no repeats".to_owned(),
-            Some(_) if found.repeats < FEW_REPEATS => {
-                format!("rough noise, of {}", format::count(found.repeats, "repeat"))
-            }
-            Some(_) => "noise floor of repeats".to_owned(),
+            Some(_) => noise_of_repeats(Some(found.repeats)),
         };
         big_figure(ui, &label, &noise, Role::NoiseFloor);
     });

@@ -69,4 +69,7 @@ pub enum RigModelError {
     /// No step left.
     #[error("there is no step left to take back: the model is as it began")]
     NothingToUndo,
+    /// Nothing was taken back, or something was changed since.
+    #[error("nothing was taken back that could be put back: the model was changed since")]
+    NothingToRedo,
 }

@@ -189,6 +189,34 @@ impl RigModel {
         Ok(())
     }
 
+    /// Puts back what was taken back last, to the last bit; nothing may have been changed since.
+    ///
+    /// # Errors
+    /// When nothing was taken back, or something was changed since.
+    pub fn redo(&mut self) -> Result<(), RigModelError> {
+        let last = self.taken_back_last().ok_or(RigModelError::NothingToRedo)?;
+        // Steps are taken back from the end: it was the first one behind those that stand.
+        let stands = self.history.iter().rposition(Step::can_be_undone).map_or(0, |last| last + 1);
+        let mut taken_back =
+            (stands..last).filter(|i| self.history[*i].undone && self.history[*i].kind != StepKind::Undone);
+        let step = taken_back.next().ok_or(RigModelError::NothingToRedo)?;
+        self.contents = self.history[last].before.clone();
+        (self.history[last].undone, self.history[step].undone) = (true, false);
+        Ok(())
+    }
+
+    /// Whether what was taken back last can be put back.
+    pub fn can_redo(&self) -> bool {
+        self.taken_back_last().is_some()
+    }
+
+    /// The taking back after which nothing was changed, but what was put back since.
+    fn taken_back_last(&self) -> Option<usize> {
+        let is_taking_back = |step: &Step| step.kind == StepKind::Undone;
+        let last = self.history.iter().rposition(|step| !(is_taking_back(step) && step.undone))?;
+        is_taking_back(&self.history[last]).then_some(last)
+    }
+
     /// Whether there is a step to take back.
     pub fn can_undo(&self) -> bool {
         self.history.iter().any(Step::can_be_undone)

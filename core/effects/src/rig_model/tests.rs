@@ -182,6 +182,33 @@ fn gaps_of_the_first_format_become_meters() {
 }
 
 #[test]
+fn what_was_taken_back_is_put_back_until_something_else_is_changed() {
+    let rig = nico();
+    let mut model = elbow(&rig);
+    let first = model.clone();
+    assert!(!model.can_redo());
+    model.add(&rig, addition(vec![effect("joint-sag", "r_arm_x", &[0.01])])).expect("fits");
+    let second = model.contents.clone();
+    for _ in 0..2 {
+        // Taken back in two steps and put back in two, as often as anybody likes.
+        model.undo(Timestamp::UNIX_EPOCH).expect("a step");
+        model.undo(Timestamp::UNIX_EPOCH).expect("a step");
+        assert!(model.is_nominal() && model.can_redo());
+        model.redo().expect("taken back");
+        assert_eq!((&model.contents, model.can_redo()), (&first.contents, true));
+        model.redo().expect("taken back");
+        assert_eq!((&model.contents, model.can_redo()), (&second, false));
+        assert!(model.history[..2].iter().all(Step::can_be_undone));
+    }
+    // What was put back is taken back in the same order.
+    model.undo(Timestamp::UNIX_EPOCH).expect("a step");
+    assert_eq!(model.contents, first.contents);
+    model.add(&rig, addition(vec![effect("joint-sag", "r_arm_x", &[0.02])])).expect("fits");
+    let why = model.redo().expect_err("something else was added since").to_string();
+    assert!(why.contains("changed since") && !model.can_redo(), "{why}");
+}
+
+#[test]
 fn taking_back_restores_what_was_in_force() {
     let rig = nico();
     let mut model = elbow(&rig);

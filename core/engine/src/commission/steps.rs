@@ -1,6 +1,6 @@
 //! Which steps are done, and which comes next.
 
-use super::around::{CommissionAround, Made};
+use super::around::{CommissionAround, Found, Made};
 use super::kept::{Kept, KeptRun, Learned};
 use super::view::{CommissionDone, CommissionFigure, CommissionState, CommissionStep, CommissionStepView};
 use crate::ground::Time;
@@ -63,7 +63,12 @@ fn effects(around: &CommissionAround, kept: Option<&Kept>) -> Made {
         let found = around.found.as_ref().filter(|found| !found.is_open)?;
         return found.sessions.contains(&touched.session).then(|| found.done.clone());
     };
-    let is_in_use = learned.effects.iter().all(|name| around.effects.names.contains(name));
+    // What was learned later may be taken back alone: all that was found of these touches is there still.
+    let has_all_found = |found: &Found| {
+        !found.is_open && found.sessions.contains(&touched.session) && !around.effects.names.is_empty()
+    };
+    let is_in_use = learned.effects.iter().all(|name| around.effects.names.contains(name))
+        || around.found.as_ref().is_some_and(has_all_found);
     let figure = match learned.is_not_in_library {
         true => CommissionFigure::NotInLibrary,
         false => CommissionFigure::Effects(around.effects.told.clone()),

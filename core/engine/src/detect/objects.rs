@@ -8,6 +8,7 @@ use plumbline_grasp::outline::Boxes;
 use plumbline_grasp::stands::{self, Stands};
 use plumbline_grasp::things::Thing;
 use plumbline_model::detection::{ClassIndex, ClassNames, Detection, PixelBox};
+use plumbline_model::spread::NORMAL_95;
 use plumbline_model::{AimedPair, Eye, Pixel, Raw, Rectified, StereoCalibration, StereoFrame};
 use plumbline_vision::detect_places::{
     Estimate, ObjectPlace, Place, PlaceFinder, PlaceOptions, RangeFrom, Seen,
@@ -182,9 +183,9 @@ fn stands(place: &Place, setup: &LiveSetup, name: &str, seen: [&Option<SeenBox>;
 fn other_size(stands: &Stands, name: &str) -> Option<String> {
     let by = stands.larger_by()?;
     let (share, size) = (100.0 * by.abs(), if by > 0.0 { "larger" } else { "smaller" });
-    let (sigma, class) = (100.0 * stands.scale_sigma, name.to_lowercase());
+    let (half, class) = (100.0 * NORMAL_95 * stands.scale_sigma, name.to_lowercase());
     Some(format!(
-        "It is {share:.0} ± {sigma:.0} % {size} than the {class} that is known: another toy, something else that is \
+        "It is {share:.0} ± {half:.0} % {size} than the {class} that is known: another toy, something else that is \
          taken for one, or a part of it is hidden. Its place and its height go by the size that is seen."
     ))
 }

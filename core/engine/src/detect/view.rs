@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use plumbline_model::detection::{ClassIndex, ClassNames, PixelBox};
 use plumbline_model::frame::Robot;
+use plumbline_model::spread::radius_95_m;
 use plumbline_model::{Eye, Pixel, Point, Raw, Rectified, Stamp};
 pub use plumbline_vision::detect_places::NoPlace as Unplaced;
 use serde::{Deserialize, Serialize};
@@ -311,6 +312,13 @@ pub struct ObjectPlaceView {
     pub range_sigma_m: f64,
     /// The model of the robot, for people: "as described", "with 2 effects".
     pub model: Arc<str>,
+}
+
+impl ObjectPlaceView {
+    /// So near to its middle it is with 95 %, meters.
+    pub fn within_m(&self) -> f64 {
+        radius_95_m(&self.covariance_m2)
+    }
 }
 
 /// Where the time of one result went: both eyes one after the other, or of two at once the one that

@@ -15,7 +15,7 @@ use plumbline_vision::synthetic::{Plane, Scene, granite_texture};
 
 use super::cold::counted_twice;
 use super::command::DriftCommand;
-use super::view::DriftView;
+use super::view::{BeganAnew, DriftView};
 use super::{DriftAround, DriftStage, DriftWorkflow, Told};
 use crate::ground::jobs::list::JobList;
 use crate::ground::notice::Notices;
@@ -185,8 +185,11 @@ fn lights_off_another_source_and_eyes_switched_on_again() {
     desk.see(&still);
     assert!(desk.said().iter().any(|text| text.contains("switched on again")), "{:?}", desk.said());
     assert_eq!(desk.view().course.as_ref().map(|course| course.points.len()), Some(1));
+    let anew = desk.view().anew.clone().expect("nobody asked for it");
+    assert_eq!((anew.why, anew.moved_before), (BeganAnew::SwitchedOn, None));
     desk.around.opened = 2;
     desk.see(&still);
+    assert_eq!(desk.view().anew.as_ref().map(|anew| anew.why), Some(BeganAnew::Opened));
     assert_eq!(
         desk.view().course.as_ref().map(|course| course.points.len()),
         Some(1),
@@ -197,6 +200,32 @@ fn lights_off_another_source_and_eyes_switched_on_again() {
     assert!(desk.view().waits_because.as_deref().is_some_and(|why| why.contains("No pairs come")));
     desk.ask(DriftCommand::Start);
     assert!(desk.said().last().is_some_and(|text| text.contains("Nothing can be watched yet")));
+}
+
+/// The cameras go off and on: that an eye was knocked before is not forgotten, until somebody begins a new watch or
+/// another world is looked at.
+#[test]
+fn what_had_moved_before_the_cameras_were_switched_on_again_stays_said() {
+    let mut desk = Desk::new();
+    let (still, knocked) = (desk.pair(0.0), desk.pair(0.5));
+    desk.ask(DriftCommand::Start);
+    (0..17).for_each(|_| _ = desk.see(&still));
+    (0..4).for_each(|_| _ = desk.see(&knocked));
+    let moved_before = |desk: &mut Desk| desk.view().anew.as_ref().and_then(|anew| anew.moved_before.clone());
+    let says_so =
+        |desk: &mut Desk| moved_before(desk).is_some_and(|moved| moved.contains("right eye has turned"));
+    assert!(desk.view().anew.is_none());
+    for opened in [2, 3] {
+        desk.around.opened = opened;
+        desk.see(&knocked);
+        assert!(says_so(&mut desk), "{:?}", desk.view().anew);
+    }
+    desk.around.world = Some(World::Twin);
+    desk.around.opened = 4;
+    desk.see(&knocked);
+    assert!(desk.view().anew.is_some() && !says_so(&mut desk), "the twin's eyes were not knocked");
+    desk.ask(DriftCommand::Start);
+    assert!(desk.view().anew.is_none(), "it was asked for");
 }
 
 /// A hand that waves: it hides most of both images, elsewhere each time.

@@ -26,6 +26,8 @@ pub struct DriftView {
     pub failed: Option<String>,
     /// What was seen since watching began; `None`: it never did.
     pub course: Option<Arc<DriftCourse>>,
+    /// That watching began anew without being asked to; `None`: it did not.
+    pub anew: Option<Anew>,
     /// Whether a session is being made of it, or it is told with another model.
     pub is_busy: bool,
     /// Why it cannot be explained now, a part of a sentence; `None`: it can.
@@ -37,6 +39,46 @@ pub struct DriftView {
     pub log: Option<PathBuf>,
     /// The 9 by 4 evaluation.
     pub grid: GridView,
+}
+
+/// Watching began anew by itself: what it tells is of the time since.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Anew {
+    /// Why.
+    pub why: BeganAnew,
+    /// What had moved before, a sentence; `None`: nothing was seen to.
+    pub moved_before: Option<String>,
+}
+
+/// Why what comes cannot be compared with what was seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BeganAnew {
+    /// Another source was opened, or the same again.
+    Opened,
+    /// The time since the cameras were switched on was set: times before and after are of different clocks.
+    ClockSet,
+    /// It became known, or is not any more.
+    ClockKnown,
+    /// The cameras were switched off and on.
+    SwitchedOn,
+    /// A recording was wound back.
+    WoundBack,
+    /// What was seen cannot be told with the model that is in use now.
+    OtherModel,
+}
+
+impl BeganAnew {
+    /// What the operator is told when it happens, a sentence; `None`: nothing, he did it or is told elsewhere.
+    pub(super) fn notice(self) -> Option<&'static str> {
+        match self {
+            Self::ClockSet => {
+                Some("The time since the cameras were switched on was set: watching drift begins anew.")
+            }
+            Self::WoundBack => Some("The recording was wound back: watching drift begins anew."),
+            Self::SwitchedOn => Some("The cameras were switched on again: watching drift begins anew."),
+            Self::Opened | Self::ClockKnown | Self::OtherModel => None,
+        }
+    }
 }
 
 /// The 9 by 4 evaluation: a thing at known places, and how far off it comes out.

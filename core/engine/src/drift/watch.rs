@@ -9,10 +9,10 @@ use plumbline_model::StereoFrame;
 
 use super::DriftAround;
 use super::stage::DriftInput;
-use super::view::{DriftCourse, DriftPoint};
+use super::view::{BeganAnew, DriftCourse, DriftPoint};
 use super::work::Context;
-use crate::ground::Time;
 use crate::ground::notice::NoticeLevel;
+use crate::ground::{Time, World};
 
 /// It looks no more often than this, by the clock of the eyes.
 pub(super) const EVERY: Duration = Duration::from_secs(2);
@@ -31,6 +31,8 @@ pub(super) struct Watch {
     pub began: Instant,
     /// Of which source, counted.
     pub opened: u64,
+    /// And of which world.
+    pub world: Option<World>,
     /// How often the eyes' clock had been set.
     pub clock_settings: u64,
     /// Whether it is known.
@@ -60,6 +62,7 @@ impl Watch {
         Self {
             began: now.instant,
             opened: around.opened,
+            world: around.world,
             clock_settings: around.clock_settings,
             from_switching_on: around.eyes_on_s.is_some(),
             monitor: Monitor::default(),
@@ -76,8 +79,23 @@ impl Watch {
         }
     }
 
+    /// Why what comes now cannot be compared with what was seen; `None`: it can.
+    pub fn begins_anew(&self, around: &DriftAround) -> Option<BeganAnew> {
+        if self.opened != around.opened {
+            Some(BeganAnew::Opened)
+        } else if self.clock_settings != around.clock_settings {
+            Some(BeganAnew::ClockSet)
+        } else if self.from_switching_on != around.eyes_on_s.is_some() {
+            Some(BeganAnew::ClockKnown)
+        } else if self.went_back(around) {
+            Some(if around.is_recorded { BeganAnew::WoundBack } else { BeganAnew::SwitchedOn })
+        } else {
+            None
+        }
+    }
+
     /// Whether the eyes were switched off since.
-    pub fn went_back(&self, around: &DriftAround) -> bool {
+    fn went_back(&self, around: &DriftAround) -> bool {
         let last = self.monitor.samples().last();
         last.zip(around.eyes_on_s).is_some_and(|(last, on_s)| on_s < last.at_s - WENT_BACK_S)
     }

@@ -12,7 +12,7 @@ use super::command::DriftCommand;
 use super::grid_room::{GridRoom, PlacesResult};
 use super::stage::{DriftInput, DriftOutput};
 use super::stated::Stated;
-use super::view::{DriftCourse, DriftView};
+use super::view::{Anew, BeganAnew, DriftCourse, DriftView};
 use super::watch::{EVERY, FIRST, Watch};
 pub use super::work::Context;
 use super::work::{DriftResult, DriftWork};
@@ -22,10 +22,6 @@ use crate::ground::stage::Timed;
 use crate::ground::step::StepState;
 use crate::ground::{Moment, Time, Workflow, World};
 use crate::robot::RobotControl;
-
-/// Times before and after are of different clocks.
-const CLOCK_WAS_SET: &str =
-    "The time since the cameras were switched on was set: watching drift begins anew.";
 
 /// Watching drift. There is one at a time, of what is shown.
 #[derive(Clone, Debug, Default)]
@@ -37,6 +33,8 @@ pub struct DriftWorkflow {
     pub(super) course: Option<Arc<DriftCourse>>,
     /// The model with which the last watch was told that has ended, and of which source it was.
     pub(super) told_with: Option<(Arc<RobotModel>, u64)>,
+    /// The watch under way began by itself, after another.
+    anew: Option<Anew>,
     failed: Option<String>,
     down: Option<String>,
     pub(super) data_dir: PathBuf,
@@ -71,20 +69,11 @@ impl DriftWorkflow {
         let now = context.time;
         self.grid.saw(&self.data_dir, around, context);
         let Some(watch) = &self.watch else { return };
-        if watch.opened != around.opened {
-            self.begin(around, now);
-        } else if watch.clock_settings != around.clock_settings {
-            context.notices.add(NoticeLevel::Info, CLOCK_WAS_SET);
-            self.begin(around, now);
-        } else if watch.from_switching_on != around.eyes_on_s.is_some() {
-            self.begin(around, now);
-        } else if watch.went_back(around) {
-            let text = match around.is_recorded {
-                true => "The recording was wound back: watching drift begins anew.",
-                false => "The cameras were switched on again: watching drift begins anew.",
-            };
-            context.notices.add(NoticeLevel::Info, text);
-            self.begin(around, now);
+        if let Some(why) = watch.begins_anew(around) {
+            if let Some(text) = why.notice() {
+                context.notices.add(NoticeLevel::Info, text);
+            }
+            self.begin_anew(why, around, now);
         }
         self.use_model(around, context);
         let number = self.number;
@@ -164,7 +153,7 @@ impl DriftWorkflow {
         let Some(monitor) = monitor else {
             let text = "What was watched cannot be told with the new model as the head stands: watching begins anew.";
             context.notices.add(NoticeLevel::Info, text);
-            return self.begin(around, context.time);
+            return self.begin_anew(BeganAnew::OtherModel, around, context.time);
         };
         watch.told_alarms = monitor.alarms().len();
         watch.told_motions = monitor.own_motions().len();
@@ -172,8 +161,20 @@ impl DriftWorkflow {
         self.course = watch.course().map(Arc::new);
     }
 
+    /// Nobody asked for it: that something had moved before, in the same world, stays said.
+    fn begin_anew(&mut self, why: BeganAnew, around: &DriftAround, now: Time) {
+        let is_same_world = self.watch.as_ref().is_some_and(|watch| watch.world == around.world);
+        let seen = self.course.as_ref().filter(|course| matches!(course.verdict, Verdict::Moved(_)));
+        let seen = seen.map(|course| course.sentence.clone());
+        let earlier = self.anew.take().and_then(|anew| anew.moved_before);
+        self.begin(around, now);
+        let moved_before = seen.or(earlier).filter(|_| is_same_world);
+        self.anew = Some(Anew { why, moved_before });
+    }
+
     fn begin(&mut self, around: &DriftAround, now: Time) {
         self.number += 1;
+        self.anew = None;
         self.retelling = None;
         self.failed = None;
         self.course = None;
@@ -216,6 +217,7 @@ impl Workflow for DriftWorkflow {
             looks_at: self.watch.as_ref().and_then(|watch| Some([watch.looked?, watch.due])),
             failed: self.failed.clone().filter(|_| is_watching),
             course: self.course.clone(),
+            anew: self.anew.clone(),
             is_busy: self.logging.is_some() || self.retelling.is_some(),
             unexplained: self.unexplained(around),
             stated_m,
@@ -266,7 +268,7 @@ impl Workflow for DriftWorkflow {
     fn work_ended(&mut self, id: JobId, why: Option<&str>, around: &DriftAround, context: &mut Context<'_>) {
         self.logging.take_if(|logging| *logging == id);
         if self.retelling.take_if(|retelling| *retelling == id).is_some() && why.is_some() {
-            self.begin(around, context.time);
+            self.begin_anew(BeganAnew::OtherModel, around, context.time);
         }
         self.grid.work_ended(id, why, context);
     }

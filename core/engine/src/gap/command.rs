@@ -51,6 +51,8 @@ pub enum GapCommand {
     },
     /// Goes back to the model before.
     Undo,
+    /// Puts back what was taken back last, if nothing was changed since.
+    Redo,
     /// Takes all effects out of the model.
     UseNominal,
     /// Writes a page about the finding that is shown.

@@ -46,6 +46,7 @@ pub fn view(model: &RigModel, moved_m: &[Option<f64>]) -> GapModelView {
         title: if effect.title.is_empty() { plain(&effect.name()) } else { effect.title.clone() },
         parameters: effect.parameters.iter().map(|p| (p.name.clone(), p.value, [p.low, p.high])).collect(),
         is_of_eyes: Kind::of_id(&effect.id).is_some_and(Kind::is_of_eyes),
+        is_left_out: false,
         moved_m: moved_m.get(i).copied().flatten(),
     });
     GapModelView {
@@ -53,6 +54,7 @@ pub fn view(model: &RigModel, moved_m: &[Option<f64>]) -> GapModelView {
         effects: effects.collect(),
         history: model.history.iter().enumerate().map(|(i, taken)| step(model, i, taken)).collect(),
         can_undo: model.can_undo(),
+        can_redo: model.can_redo(),
     }
 }
 

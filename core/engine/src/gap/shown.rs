@@ -6,10 +6,11 @@ use plumbline_effects::rig_model::ModelEffect;
 use plumbline_effects::{RigModel, What};
 use plumbline_fit::LEAST_TOUCHES;
 use plumbline_gap::Finding;
+use plumbline_model::robot::Rig;
 
 use super::model;
 use super::store::Named;
-use super::view::{GapView, ShownFinding};
+use super::view::{GapModelView, GapView, ShownFinding};
 use super::workflow::{GapAround, GapWorkflow, LeftOut, Seen};
 use crate::ground::step::StepState;
 
@@ -27,10 +28,21 @@ impl GapWorkflow {
             shown: self.seen.shown.clone(),
             beside: self.seen.beside.clone(),
             stale: self.stale(),
-            model: self.seen.model.clone(),
+            model: self.seen_with(&around.rig),
             sizes_arm: self.seen.sizes_arm,
             rig: Some(around.rig.clone()),
         }
+    }
+
+    /// The model in use, with what of it is not in force with the eyes of this robot.
+    fn seen_with(&self, rig: &Rig) -> GapModelView {
+        let mut seen = self.seen.model.clone();
+        let others = self.model.iter().flat_map(|model| model.effects_of_other_eyes(rig));
+        let names: Vec<String> = others.map(ModelEffect::name).collect();
+        for effect in &mut seen.effects {
+            effect.is_left_out = names.contains(&effect.name);
+        }
+        seen
     }
 
     /// Makes anew what is shown, after a change.

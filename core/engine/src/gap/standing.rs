@@ -72,6 +72,7 @@ mod tests {
             title: "Fingertip: it rolls".to_owned(),
             parameters: vec![],
             is_of_eyes,
+            is_left_out: false,
             moved_m,
         };
         assert_eq!(

@@ -111,6 +111,8 @@ pub struct GapModelView {
     pub history: Vec<ModelStep>,
     /// Whether there is something to go back to.
     pub can_undo: bool,
+    /// Whether what was taken back last can be put back.
+    pub can_redo: bool,
 }
 
 /// An effect in the model.
@@ -126,6 +128,8 @@ pub struct AddedEffect {
     pub parameters: Vec<(String, f64, [f64; 2])>,
     /// Whether it is one of the eyes.
     pub is_of_eyes: bool,
+    /// Whether it is not in force, for it was found with other eyes than those in use.
+    pub is_left_out: bool,
     /// How far it moves the fingertip on the glass, or, of the eyes, where they see things there, rms, m; `None`:
     /// nothing there shows it.
     pub moved_m: Option<f64>,

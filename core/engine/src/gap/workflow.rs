@@ -367,6 +367,7 @@ impl Workflow for GapWorkflow {
                 }
             }
             GapCommand::Add { effects } => self.add(effects, around, context),
+            GapCommand::Redo => self.change("Put back what was taken back", around, context, RigModel::redo),
             GapCommand::Undo => {
                 let at = context.time.day;
                 self.change("Go back to the model before", around, context, |model| model.undo(at));

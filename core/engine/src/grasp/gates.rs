@@ -1,12 +1,13 @@
 //! What is looked at before anything moves.
 
 use plumbline_grasp::{Hand, HandChoice, Method};
+use plumbline_model::counted;
 use plumbline_model::robot::JointIndex;
 
 use super::around::GraspAround;
 use super::method::lacks;
 use super::rest::rest;
-use super::view::{Gate, GateState, InHand, Need};
+use super::view::{Gate, GateState, HandWaits, InHand, Need};
 use super::warmth::warmth;
 use crate::ground::text::sentence;
 use crate::robot::view::{Connection, RobotView};
@@ -46,6 +47,16 @@ pub fn full_hand(held: &InHand) -> Gate {
             held.hand.name()
         ),
     )
+}
+
+/// Fingers that may be around something, which would fall where the hand opens for something else.
+pub fn may_hold(waits: HandWaits) -> Option<Gate> {
+    let text = match waits {
+        HandWaits::Around => "Its fingers may be around something: open the hand first.",
+        HandWaits::Carries => "Its fingers may carry something: put it down, or open the hand, first.",
+        HandWaits::Low | HandWaits::InView => return None,
+    };
+    Some(closed(Need::Hand, text))
 }
 
 /// What lets any of the hands pass; where not all of them pass, the reason is said.
@@ -115,6 +126,7 @@ fn joints(around: &GraspAround, arm: &str) -> Gate {
     if robot.measured.is_none() {
         return closed(Need::Arm, "The joints have not been read yet: wait a moment.");
     }
+    let limp = of_arm.clone().filter(|joint| joint.has_to_be_held()).count();
     let mut warm = None;
     let trouble = of_arm.find_map(|joint| {
         let title = &joint.title;
@@ -123,7 +135,13 @@ fn joints(around: &GraspAround, arm: &str) -> Gate {
             return Some(format!("It is not known where {title} is: {advice}."));
         }
         if joint.has_to_be_held() {
-            return Some(format!("{title} does not hold: choose Hold all joints in Robot."));
+            return Some(match limp {
+                1 => format!("{title} does not hold: choose Hold all joints in Robot."),
+                n => format!(
+                    "{} of the arm do not hold: choose Hold all joints in Robot.",
+                    counted(n, "joint")
+                ),
+            });
         }
         let temperature_c = joint.temperature_c?;
         if temperature_c >= rig.gate.hot_c {
@@ -207,7 +225,7 @@ fn method_gate(around: &GraspAround, method: Method) -> Gate {
         // It can grasp so, but not with what it is for.
         None if method == Method::M5 && around.model.is_nominal() => doubtful(
             Need::Method,
-            "No effect was found and added yet: M5 sends the arm as it is described and trusts to its eyes alone. Look for what makes the arm miss in step 5, Gap.",
+            "No effect is in use: M5 sends the arm as it is described and trusts to its eyes alone. Look for what makes the arm miss in step 5, Gap.",
         ),
         None => open(Need::Method, format!("{name} has what it needs.")),
     }

@@ -115,7 +115,7 @@ impl HeldWatch {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use jiff::Timestamp;
     use plumbline_grasp::{Method, Outcome};
     use plumbline_model::robot::Limits;
@@ -129,7 +129,7 @@ mod tests {
         Rig::built_in("nico").expect("comes with the program")
     }
 
-    fn attempt() -> AttemptView {
+    pub fn attempt() -> AttemptView {
         AttemptView {
             name: "one".to_owned(),
             folder: PathBuf::from("one"),

@@ -29,6 +29,7 @@ mod stepwise;
 mod tests;
 mod tracks;
 pub mod view;
+mod waits;
 mod warmth;
 pub mod work;
 mod workflow;

@@ -23,10 +23,8 @@ pub(super) fn rest(around: &GraspAround, arm: &str) -> Gate {
     let Some(arm) = around.described.arm(arm) else {
         return closed(Need::Rest, "The robot has no such arm.");
     };
-    let of_arm = |joint: &&JointView| {
-        (arm.joints.contains(&joint.joint) || arm.hand.contains(&joint.joint))
-            && joint.torque_on == Some(true)
-    };
+    let is_of_arm = |joint: &JointView| arm.joints.contains(&joint.joint) || arm.hand.contains(&joint.joint);
+    let of_arm = |joint: &&JointView| is_of_arm(joint) && joint.torque_on == Some(true);
     let may_hang_rad =
         |joint: &JointView| if arm.hand.contains(&joint.joint) { FINGER_HANGS_RAD } else { HANGS_RAD };
     let turns = |joint: &&JointView| joint.speed_rad_s.is_some_and(|speed| speed.abs() > TURNS_RAD_S);
@@ -45,6 +43,9 @@ pub(super) fn rest(around: &GraspAround, arm: &str) -> Gate {
                 off_rad.to_degrees()
             ),
         ),
+        None if robot.joints.iter().any(|joint| is_of_arm(joint) && joint.torque_on == Some(false)) => {
+            doubtful(Need::Rest, "Joints of the arm are limp: where it stands holds it, nothing else.")
+        }
         None => open(Need::Rest, "The arm stands, and holds what it was told last."),
     }
 }

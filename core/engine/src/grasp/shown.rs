@@ -7,9 +7,9 @@ use plumbline_grasp::things::Thing;
 
 use super::area::area;
 use super::around::GraspAround;
-use super::gates::{full_hand, gates};
+use super::gates::{full_hand, gates, may_hold};
 use super::method::methods;
-use super::view::{Gate, GraspPhase, GraspView, HandChoice, InHand};
+use super::view::{Gate, GraspPhase, GraspView, HandChoice, HandWaits, InHand};
 use super::workflow::{GraspWorkflow, What};
 use crate::ground::step::StepState;
 
@@ -31,6 +31,8 @@ impl GraspWorkflow {
             target: self.target.clone(),
             stops_after_each: self.stops.is_on(),
             held: self.in_hand(),
+            hand_waits: self.waits(around),
+            hand_moved: self.hand_moved,
             gates: self.gates(around, self.choice).into(),
             phase,
             plan: self.plan.clone(),
@@ -44,12 +46,18 @@ impl GraspWorkflow {
         self.held.as_ref().map(|held| InHand { object: held.object.clone(), hand: held.hand })
     }
 
+    /// How a hand was left, unless it was moved since, or holds something that is known.
+    pub fn waits(&self, around: &GraspAround) -> Option<HandWaits> {
+        self.waits.as_ref().filter(|_| self.held.is_none())?.now(&around.robot)
+    }
+
     /// What is looked at before anything moves; what is in a hand is among it.
     pub(super) fn gates(&self, around: &GraspAround, choice: HandChoice) -> Vec<Gate> {
         let full = self.in_hand();
         let area = self.stands_at_m(around).and_then(|at_m| area(around, self.method, at_m));
         let gates = gates(around, choice, self.method).into_iter();
-        gates.chain(area).chain(full.iter().map(full_hand)).collect()
+        let may_hold = self.waits(around).filter(|_| full.is_none()).and_then(may_hold);
+        gates.chain(area).chain(full.iter().map(full_hand)).chain(may_hold).collect()
     }
 
     /// Where what is to be grasped stands, as far as that is known before it is looked for, robot frame, m.

@@ -2,6 +2,7 @@
 
 use plumbline_grasp::plan::{GraspPlanner, NoPlan};
 use plumbline_grasp::{Body, Halt, NoArm, PalmArm};
+use plumbline_model::robot::Posture;
 use plumbline_model::{JobContext, Point};
 
 use super::body::{LedBody, Ropes};
@@ -47,6 +48,9 @@ pub enum NoStep {
     /// Something is in the way.
     #[error("no way down is free ({0}): hand it over instead, or take it out of the hand")]
     NoWay(NoPlan),
+    /// It would let go.
+    #[error("the fingers do not open all the way here ({0}): lift the hand, then open it")]
+    Blocked(String),
     /// It would hand over.
     #[error("the arm does not reach where things are handed over")]
     OutOfReach,
@@ -96,7 +100,15 @@ struct Hand<'a> {
 impl Hand<'_> {
     fn open(&mut self) -> Result<(), NoStep> {
         let from = self.body.commanded()?;
-        Ok(self.body.follow(&[self.planner.open(&from)], OPEN_RAD_S)?)
+        self.unfold(&self.planner.open(&from))
+    }
+
+    /// Fingers go where they are open, or it is said that something keeps them from it.
+    fn unfold(&mut self, open: &Posture) -> Result<(), NoStep> {
+        self.body.follow(std::slice::from_ref(open), OPEN_RAD_S).map_err(|halt| match halt {
+            Halt::Refused(why) => NoStep::Blocked(why),
+            other => other.into(),
+        })
     }
 
     fn close(&mut self) -> Result<(), NoStep> {
@@ -131,7 +143,7 @@ impl Hand<'_> {
         self.context.report(0.5, "letting go");
         self.body.let_fingers_touch()?;
         let open = self.planner.open(&low);
-        self.body.follow(std::slice::from_ref(&open), OPEN_RAD_S)?;
+        self.unfold(&open)?;
         self.body.wait(0.3)?;
         self.body.let_fingers_touch()?;
         let heading_rad = self.planner.arm().heading_rad(&open);

@@ -35,6 +35,10 @@ pub struct GraspView {
     pub stops_after_each: bool,
     /// What was grasped and is in a hand still.
     pub held: Option<InHand>,
+    /// How the hand was left, where that matters to what is done next; `None`: it does not, or it was moved since.
+    pub hand_waits: Option<HandWaits>,
+    /// Whether the hand was moved by itself since the last attempt: why that failed says nothing of now.
+    pub hand_moved: bool,
     /// What is looked at before anything moves.
     pub gates: Arc<[Gate]>,
     /// What is done just now.
@@ -63,6 +67,19 @@ impl GraspView {
         let holds = matches!(self.phase, GraspPhase::Grasping { paused: true, ending: false });
         self.run.as_ref().filter(|_| holds)?.between
     }
+}
+
+/// How a hand was left.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HandWaits {
+    /// Its fingers may be around something: it is opened first.
+    Around,
+    /// The same in the air: what it may carry is put down first.
+    Carries,
+    /// It is open, around something or low between things: it is lifted first.
+    Low,
+    /// It stands over the table, where it hides what is grasped next, and cannot be told from the picture before.
+    InView,
 }
 
 /// Where an attempt holds by itself.
@@ -353,6 +370,11 @@ impl AttemptView {
         };
         self.told.is_none() && halted
     }
+}
+
+/// Whether nothing was grasped because what was to be was not seen.
+pub fn is_unseen(outcome: &GraspOutcome) -> bool {
+    matches!(outcome, GraspOutcome::Failed { failure: Failure::NotSeen, .. })
 }
 
 /// Whether an attempt was ended before anything could come of it.

@@ -10,7 +10,7 @@ use super::attempt::{Attempt, CarriedOut, Proposed};
 use super::command::HandStep;
 use super::keeping::{self, Keeping};
 use super::steps::{HandWork, NoStep};
-use super::view::AttemptView;
+use super::view::{AttemptView, is_halted, is_unseen};
 use crate::ground::jobs::JobError;
 use crate::ground::{self, LongWork};
 use crate::robot::RobotControl;
@@ -124,7 +124,14 @@ impl GraspResult {
                 Some(Outcome::Success) => {
                     format!("Fingers and eyes say: the {} is held.", done.attempt.object.to_lowercase())
                 }
-                Some(Outcome::Failed { why, .. }) => format!("Not held: {why}."),
+                Some(outcome @ Outcome::Failed { why, .. }) => {
+                    let what = match outcome {
+                        outcome if is_halted(outcome) => "Broken off",
+                        outcome if is_unseen(outcome) => "Not grasped",
+                        _ => "Not held",
+                    };
+                    format!("{what}: {why}.")
+                }
                 Some(Outcome::Refused { why }) => format!("Not grasped: {why}."),
                 None => "The grasp ended without a word.".to_owned(),
             },

@@ -6,7 +6,8 @@ use std::time::{Duration, Instant};
 /// How one stage is doing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StageStatistics {
-    /// Results per second over the last two seconds; `None` before the second result.
+    /// Results per second over the last two seconds, of fewer of the last two; `None` before the second result, and where
+    /// that was long ago.
     pub per_second: Option<f64>,
     /// Median time spent on one result, of the last ones.
     pub busy: Option<Duration>,
@@ -29,6 +30,8 @@ pub struct StageClock {
 
 /// The rate is that of the results within this time.
 const WINDOW: Duration = Duration::from_secs(2);
+/// Where fewer come, it is that of the last two, no older than this.
+const SLOW: Duration = Duration::from_secs(10);
 /// The median time is that of this many results.
 const BUSY_KEPT: usize = 31;
 
@@ -64,7 +67,11 @@ impl StageClock {
 
     fn forget_before(&mut self, now: Instant) {
         // The newest one stays: it says how old the picture is.
-        while self.results.len() > 1 && now.saturating_duration_since(self.results[0]) > WINDOW {
+        while self.results.len() > 1 {
+            let most = if self.results.len() > 2 { WINDOW } else { SLOW };
+            if now.saturating_duration_since(self.results[0]) <= most {
+                break;
+            }
             self.results.pop_front();
         }
     }
@@ -99,6 +106,19 @@ mod tests {
         assert!((rate - 30.0).abs() < 0.01, "{rate}");
         assert_eq!(figures.busy, Some(Duration::from_millis(4)));
         assert_eq!(figures.latency, Some(Duration::from_millis(5)));
+    }
+
+    #[test]
+    fn what_comes_seldom_has_a_rate_too() {
+        let start = Instant::now();
+        let mut clock = StageClock::default();
+        for i in 0..5u32 {
+            let now = start + Duration::from_secs(3) * i;
+            clock.note(now, now, Duration::ZERO);
+            let later = clock.figures(now + Duration::from_millis(2900));
+            assert_eq!(later.per_second.is_some(), i > 0, "{i}");
+            assert!(later.per_second.is_none_or(|rate| (rate - 1.0 / 3.0).abs() < 1e-9), "{later:?}");
+        }
     }
 
     #[test]

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use plumbline_effects::RigModel;
 
 use crate::grasp::GraspAround;
-use crate::grasp::view::InHand;
+use crate::grasp::view::{HandWaits, InHand};
 use crate::twin::view::TwinView;
 
 /// What the workflow can see of the rest.
@@ -23,6 +23,8 @@ pub struct HandEyeAround {
     pub sessions: PathBuf,
     /// What is in a hand, which would be opened.
     pub held: Option<InHand>,
+    /// How the hand was left that moved last, where that matters.
+    pub waits: Option<HandWaits>,
     /// The twin, where its arm is connected.
     pub twin: Option<Arc<TwinView>>,
 }

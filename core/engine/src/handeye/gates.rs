@@ -3,7 +3,7 @@
 use plumbline_grasp::{Hand, HandChoice, Method};
 
 use super::around::HandEyeAround;
-use crate::grasp::gates::{full_hand, gates as gates_of_grasp};
+use crate::grasp::gates::{full_hand, gates as gates_of_grasp, may_hold};
 use crate::grasp::view::{Gate, GateState, Need};
 
 /// All gates, in the order in which they are passed. Both arms move.
@@ -22,7 +22,7 @@ pub fn gates(around: &HandEyeAround) -> Vec<Gate> {
     gates.retain(|gate| ![Need::Places, Need::Method].contains(&gate.of));
     gates.push(calibrated(around));
     gates.push(touched(around));
-    gates.extend(around.held.as_ref().map(full_hand));
+    gates.extend(around.held.as_ref().map(full_hand).or_else(|| around.waits.and_then(may_hold)));
     gates
 }
 

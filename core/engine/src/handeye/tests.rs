@@ -15,7 +15,7 @@ use super::view::HandEyeView;
 use super::work::{Context, HandEyeResult};
 use super::*;
 use crate::grasp::GraspAround;
-use crate::grasp::view::{GateState, GraspHand, InHand, Need};
+use crate::grasp::view::{GateState, GraspHand, HandWaits, InHand, Need};
 use crate::ground::jobs::JobId;
 use crate::ground::jobs::list::JobList;
 use crate::ground::notice::Notices;
@@ -126,6 +126,7 @@ fn around(rig: &Arc<Rig>, added: &Arc<RigModel>) -> HandEyeAround {
         touches: None,
         sessions: "lab/sessions".into(),
         held: None,
+        waits: None,
         twin: None,
     }
 }
@@ -189,6 +190,17 @@ fn what_is_in_a_hand_has_to_leave_it_first() {
     desk.around.held = Some(InHand { object: "Tomato".to_owned(), hand: GraspHand::Right });
     let said = of_hand(&mut desk).expect("it is looked at");
     assert!(said.state == GateState::Shut && said.text.contains("tomato is in the right hand"), "{said:?}");
+    desk.around.held = None;
+    for (waits, is_shut) in
+        [(HandWaits::Around, true), (HandWaits::Carries, true), (HandWaits::InView, false)]
+    {
+        desk.around.waits = Some(waits);
+        assert_eq!(
+            of_hand(&mut desk).is_some_and(|gate| gate.state == GateState::Shut),
+            is_shut,
+            "{waits:?}"
+        );
+    }
 }
 
 #[test]

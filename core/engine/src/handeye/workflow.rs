@@ -163,6 +163,7 @@ impl HandEyeWorkflow {
             return Err(Refusal::Changed);
         }
         let Proposal { tied, kept, summary, .. } = proposal;
+        self.progress = None;
         context.start(HandEyeWork::Keep { file: self.file.clone(), kept: kept.clone() });
         self.keep(*kept, summary);
         self.accepted = Some(tied.model);
@@ -200,7 +201,7 @@ pub fn is_of_other_eyes(added: Option<&Arc<RigModel>>, rig: &Rig) -> bool {
 /// What is not in force.
 const OTHER_EYES: &str = "The hands were looked at with another calibration or mount of the eyes than the one in use. Bring that back on the timeline, or look again.";
 /// What the model in use lost.
-const STALE: &str = "The model in use was learned anew since the eyes looked at the hands. Look again.";
+const STALE: &str = "What the eyes learned of the hands is not in the model in use any more: it was taken back, or the arm was learned anew. Look again.";
 
 /// The twin's table is cleared, as a person clears the robot's: what stood there, and where, m.
 fn clear(around: &HandEyeAround, context: &mut Context<'_>) -> Vec<(String, [f64; 2])> {
@@ -271,7 +272,7 @@ impl Workflow for HandEyeWorkflow {
             },
             HandEyeCommand::Accept => self.accept(around, context),
             HandEyeCommand::Discard => {
-                self.proposal = None;
+                (self.proposal, self.progress) = (None, None);
                 Ok(())
             }
         };

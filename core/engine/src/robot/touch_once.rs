@@ -213,10 +213,8 @@ impl Worker {
         let _ = self.arm().map(|arm| arm.hold());
         self.paths.as_described();
         let end = match reason.is_unheard() {
-            true => TouchRun::Unheard(format!("{what} The arm holds where it is.")),
-            false => TouchRun::Interrupted(format!(
-                "{what} The arm stands where it is; when its way is free, go on."
-            )),
+            true => TouchRun::Unheard(format!("{what} The arm was held where it was.")),
+            false => TouchRun::Interrupted(format!("{what} When the way of the arm is free, go on.")),
         };
         self.touching.tell(told, end);
     }

@@ -17,12 +17,14 @@ impl Neighbors<HandEyeWorkflow> for State {
         let searched = gap.found().map(|(shown, _)| shown.folders.clone());
         let one = searched.and_then(|folders| <[_; 1]>::try_from(folders).ok()).map(|[folder]| folder);
         let is_twin = world == World::Twin && self.twin.running;
+        // A look of its own is not in its own way.
+        let grasp = GraspAround {
+            goes_first: touch.in_the_way(),
+            ..<Self as Neighbors<GraspWorkflow>>::around(self, world)
+        };
         HandEyeAround {
-            // A look of its own is not in its own way.
-            grasp: GraspAround {
-                goes_first: touch.in_the_way(),
-                ..<Self as Neighbors<GraspWorkflow>>::around(self, world)
-            },
+            waits: self.rooms.grasp.of(world).waits(&grasp),
+            grasp,
             added: gap.model().cloned(),
             is_changing: gap.is_changing(),
             touches: one.or_else(|| touch.trained_session().map(Path::to_owned)),

@@ -222,7 +222,7 @@ fn of_screen(in_use: Option<&ScreenPlacement>) -> Standing {
 
 fn of_correction(id: Option<String>, model: Option<&CorrectionModel>, before_m: Option<f64>) -> Standing {
     let Some(model) = model else {
-        return nothing(Subject::Correction, "no model: targets are sent as they are");
+        return nothing(Subject::Correction, "no model corrects targets");
     };
     let made_of = model.provenance();
     let held_out = made_of.cross_validation.as_ref();
@@ -265,7 +265,12 @@ fn of_effects(model: &RigModel, titles: Vec<String>) -> Standing {
     Standing {
         subject: Subject::Effects,
         id: Some(made_at(step.at)),
-        title: if titles.is_empty() { "the robot as it is described".to_owned() } else { titles.join("; ") },
+        title: match (titles.is_empty(), step.sentence == plumbline_handeye::SENTENCE) {
+            (true, false) => "the robot as it is described".to_owned(),
+            (true, true) => "arms tied to the eyes".to_owned(),
+            (false, false) => titles.join("; "),
+            (false, true) => format!("arms tied to the eyes, with {}", titles.join("; ")),
+        },
         before: gap.map(|gap| of(gap.before, &gap.unit)),
         after: gap.map(|gap| of(gap.after, &gap.unit)),
         basis: basis.to_owned(),

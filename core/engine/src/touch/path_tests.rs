@@ -187,7 +187,7 @@ fn touches_are_sent_where_the_arm_with_its_effects_ends_on_the_pixel() {
     };
     let nominal = Corrector::Effects(Arc::new(RobotModel::nominal(rig.clone())));
     let refused = plan::make(&request(nominal), &Unattended).expect_err("no effects").to_string();
-    assert!(refused.contains("No effect was added"), "{refused}");
+    assert!(refused.contains("No effect is in the model"), "{refused}");
     let model =
         model_with(&rig, &[("joint-zero", "r_elbow_y", &[0.03]), ("joint-sag", "r_shoulder_y", &[0.02])]);
     let known = RobotModel::new(rig.clone(), Arc::new(model.clone())).expect("it fits");

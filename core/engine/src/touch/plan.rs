@@ -266,7 +266,7 @@ fn telling(
 enum NotCorrected {
     /// There is nothing to correct with.
     #[error(
-        "No effect was added to the model yet. Search the gap and add what it names, or correct with something else."
+        "No effect is in the model. Search the gap and add what it names, or correct with something else."
     )]
     Nominal,
     /// It was learned with another arm.

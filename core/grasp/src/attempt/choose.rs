@@ -119,10 +119,10 @@ fn unknown_thing(object: &str) -> String {
     format!("nothing is known of a thing called {object}: choose one of {}", known.join(", "))
 }
 
-fn one_eye_only(lower: &str, eye: &str, why: &str) -> String {
+fn one_eye_only(lower: &str, eye: &str) -> String {
     format!(
-        "the {lower} is seen by the {eye} eye only ({why}): look for what is in front of the other one, or put the \
-         {lower} nearer to the middle"
+        "the {lower} is seen by the {eye} eye only: look for what is in front of the other one, a hand of the robot \
+         perhaps, or put the {lower} nearer to the middle"
     )
 }
 
@@ -159,8 +159,8 @@ fn nearest(
     chosen.ok_or_else(|| match of_class().next() {
         None => not_seen(format!("no {lower} is seen: put it where both eyes see it")),
         Some((_, Seen { place: Err(why), boxes_px, .. })) => not_seen(match boxes_px {
-            [Some(_), None] => one_eye_only(&lower, "left", why),
-            [None, Some(_)] => one_eye_only(&lower, "right", why),
+            [Some(_), None] => one_eye_only(&lower, "left"),
+            [None, Some(_)] => one_eye_only(&lower, "right"),
             _ => format!("the {lower} has no place: {why}"),
         }),
         Some(_) => not_seen(format!(
@@ -231,8 +231,8 @@ mod tests {
     #[test]
     fn what_one_eye_alone_sees_is_refused_with_the_name_of_that_eye() {
         for (boxes_px, words) in [
-            ([BOX, None], "by the left eye only (hidden)"),
-            ([None, BOX], "by the right eye only (hidden)"),
+            ([BOX, None], "by the left eye only: look"),
+            ([None, BOX], "by the right eye only: look"),
             ([BOX, BOX], "has no place: hidden"),
         ] {
             let seen = [tomato(Err("hidden"), boxes_px)];

@@ -17,6 +17,7 @@ use super::grip::Gripping;
 use super::guard::{FloorGuard, Guard};
 use super::limiter::Limiter;
 use super::options::ArmOptions;
+use super::progress::Progress;
 use super::rate::Rate;
 use super::refusal::{HoldReason, Refusal, Unheard};
 use super::requests::Request;
@@ -28,7 +29,7 @@ use crate::dynamixel::{BusError, BusScan};
 #[derive(Debug)]
 pub(super) enum Mode {
     Hold(HoldReason),
-    Move { id: MoveId, line: Trajectory, fraction: f64, arrived_at: Option<Instant> },
+    Move { id: MoveId, line: Trajectory, fraction: f64, arrived_at: Option<Instant>, progress: Progress },
     Follow { given_at: Instant, setpoint: Setpoint, speeds_rad_s: Posture },
 }
 

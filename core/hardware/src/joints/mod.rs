@@ -31,6 +31,7 @@ mod limiter;
 mod motion;
 mod options;
 mod problem;
+mod progress;
 mod rate;
 mod reading;
 mod refusal;

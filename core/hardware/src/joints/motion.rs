@@ -105,6 +105,7 @@ impl Controller {
         joints: &[JointIndex],
     ) {
         let Mode::Move { line, fraction, arrived_at, .. } = &self.mode else { return };
+        let fraction = *fraction;
         if let Some(at) = arrived_at {
             let moves = |slot: &&Slot| {
                 joints.contains(&slot.reading.joint)
@@ -133,13 +134,40 @@ impl Controller {
             self.refuse(refusal.clone());
             return self.hold(HoldReason::Refused(refusal));
         }
-        if self.note_behind(now, commanded, measured, &wanted, joints) {
+        let made = if self.note_behind(now, commanded, measured, &wanted, joints) {
             self.commanded = Some(wanted);
-            if let Mode::Move { fraction, arrived_at, .. } = &mut self.mode {
-                *fraction = new_fraction;
-                *arrived_at = (new_fraction >= 1.0).then_some(now);
-            }
+            new_fraction - fraction
+        } else {
+            0.0
+        };
+        let longest_s = self.options.following_timeout.as_secs_f64();
+        let Mode::Move { fraction, arrived_at, progress, .. } = &mut self.mode else { return };
+        *fraction += made;
+        *arrived_at = (*fraction >= 1.0).then_some(now);
+        progress.note(dt_s, whole, made);
+        if let Some(since_s) = progress.creeps_for_s(longest_s) {
+            self.hold_what_creeps(commanded, measured, joints, since_s);
         }
+    }
+
+    /// A move that hardly comes forward ends; the joint that is behind most is named.
+    fn hold_what_creeps(
+        &mut self,
+        commanded: &Posture,
+        measured: &Posture,
+        joints: &[JointIndex],
+        since_s: f64,
+    ) {
+        let behind_rad = |joint: JointIndex| commanded[joint] - measured[joint];
+        let slots = self.exchange.slots.iter().filter(|slot| joints.contains(&slot.reading.joint));
+        let most = slots.max_by(|one, other| {
+            let of = |slot: &Slot| behind_rad(slot.reading.joint).abs();
+            of(one).total_cmp(&of(other))
+        });
+        let Some(slot) = most else { return };
+        let (joint, name) = (slot.reading.joint, slot.unit.servo.title.clone());
+        let since = Duration::from_secs_f64(since_s);
+        self.hold(HoldReason::NotFollowing { joint, name, behind_rad: behind_rad(joint), since });
     }
 
     /// Joints whose next goal would be farther ahead of the present angle than the step limit, and

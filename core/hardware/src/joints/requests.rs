@@ -10,6 +10,7 @@ use super::command::{Move, MoveId, MoveOutcome, Setpoint};
 use super::controller::{Controller, Mode};
 use super::driver::expected_servos;
 use super::grip::Grip;
+use super::progress::Progress;
 use super::refusal::{HoldReason, Refusal, Unheard};
 use super::slot::{Bar, Force, Identity, Slot};
 use super::torque::{barred, unknown};
@@ -59,7 +60,13 @@ impl Controller {
                     self.commanded = Some(line.start.clone());
                     self.stay(MoveOutcome::Replaced, HoldReason::Asked);
                     self.end_grip(&line.joints);
-                    self.mode = Mode::Move { id, line, fraction: 0.0, arrived_at: None };
+                    self.mode = Mode::Move {
+                        id,
+                        line,
+                        fraction: 0.0,
+                        arrived_at: None,
+                        progress: Progress::default(),
+                    };
                 }
                 Err(refusal) => self.refuse_request(&Request::Move(id, wanted), refusal),
             },

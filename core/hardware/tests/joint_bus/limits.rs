@@ -58,6 +58,31 @@ fn a_blocked_joint_holds_the_arm_and_its_goal_stays_near() {
     assert_goals_stay_near(&rig, &chain);
 }
 
+/// A finger on the table pushes the hand up tick by tick, and gets hot.
+#[test]
+fn a_joint_that_only_creeps_holds_the_arm() {
+    let (rig, chain, driver) = ready();
+    let pan = joint(&rig, "head_z");
+    chain.lock().servos.get_mut(&id_of(&rig, pan)).expect("there").fastest_rad_s = 0.01;
+    let outcome = run(&driver, pan, 0.8, 0.3);
+    let MoveOutcome::Held(HoldReason::NotFollowing { joint, since, .. }) = outcome else {
+        panic!("{outcome:?}")
+    };
+    assert_eq!(joint, pan);
+    assert!(since < Duration::from_secs(3), "{since:?}");
+    assert_goals_stay_near(&rig, &chain);
+}
+
+/// Slower than it was asked to be is no reason to hold.
+#[test]
+fn a_joint_that_is_slow_arrives() {
+    let (rig, chain, driver) = ready();
+    let pan = joint(&rig, "head_z");
+    chain.lock().servos.get_mut(&id_of(&rig, pan)).expect("there").fastest_rad_s = 0.12;
+    let outcome = run(&driver, pan, 0.5, 0.6);
+    assert!(matches!(outcome, MoveOutcome::Arrived { .. }), "{outcome:?}");
+}
+
 #[test]
 fn without_a_sign_of_life_the_arm_holds() {
     let heartbeat = Heartbeat::default();

@@ -9,6 +9,7 @@ use crate::decompose;
 use crate::frame::{Point, Robot};
 use crate::pixel::Pixel;
 use crate::session::{Screen, Touchscreen};
+use crate::spread::NORMAL_95;
 
 /// Spread of a single touch per axis that is assumed while there are too few touches to judge it, m.
 pub const USUAL_NOISE_M: f64 = 1.5e-3;
@@ -80,9 +81,6 @@ impl ScreenPlacement {
         NORMAL_95 * self.sd_m.iter().fold(0.0_f64, |most, sd| most.max(*sd))
     }
 }
-
-/// Of a normal distribution 95 % lie within so many standard deviations.
-const NORMAL_95: f64 = 1.96;
 
 /// Places the screen: the rigid motion (six degrees of freedom, size kept) that brings touched
 /// pixels of the nominal screen nearest to where the model says the fingertip was, in the sense of

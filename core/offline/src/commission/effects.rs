@@ -15,6 +15,7 @@ use plumbline_fit::{ArmTouches, Chosen, HeldOut, Name, SizedArm, Which};
 use plumbline_gap::Options;
 use plumbline_handeye::{Sizing, Start};
 use plumbline_model::JobContext;
+use plumbline_model::spread::NORMAL_95;
 use plumbline_model::touchscreen::place_screen;
 
 use super::error::CommissionError;
@@ -48,7 +49,7 @@ pub(super) fn run(lab: &Lab, context: &dyn JobContext) -> Result<Step, Commissio
             step.notes.push(format!(
                 "The neck's turn is off by {:.2}° ± {:.2}°.",
                 zero_rad.to_degrees(),
-                sd_rad.to_degrees()
+                NORMAL_95 * sd_rad.to_degrees()
             ));
         }
         let model = sizing.model(&arm, None, &finding.sentence, jiff::Timestamp::now())?;
@@ -167,6 +168,7 @@ mod tests {
             title: format!("Joint {k}: zero position off"),
             parameters: vec![],
             is_of_eyes: false,
+            is_left_out: false,
             moved_m,
         };
         assert_eq!(small(&[effect(0, Some(3e-3)), effect(1, None)]), None);

@@ -17,6 +17,7 @@ use plumbline_fit::pose;
 use plumbline_handeye::{Tie, body, screen, table};
 use plumbline_model::robot::{Chain, Rig};
 use plumbline_model::session::Touchscreen;
+use plumbline_model::spread::NORMAL_95;
 use plumbline_model::touch_plan::{Finger, Pattern, PlanOptions, Purpose, Sides};
 use plumbline_model::touchscreen::ScreenPlacement;
 use plumbline_model::{JobContext, Pixel, Point};
@@ -193,7 +194,7 @@ fn look_around(
         Some(body) => format!(
             "By the robot's body the neck's turn is off by {:.2}° ± {:.2}° ({} edge points, {:.2} px).",
             body.neck_rad.to_degrees(),
-            body.neck_sd_rad.to_degrees(),
+            NORMAL_95 * body.neck_sd_rad.to_degrees(),
             body.points,
             body.rms_px
         ),
@@ -223,7 +224,7 @@ fn look_around(
         Some(table) => format!(
             "Its glass lies {:.1} ± {:.1} mm over the table around it ({} places).",
             1e3 * table.glass_over_m,
-            1e3 * table.sd_m,
+            NORMAL_95 * 1e3 * table.sd_m,
             table.places
         ),
         None => {

@@ -14,7 +14,7 @@ use plumbline_widgets::format;
 
 use super::sentence::Guidance;
 use super::{failed_inside, gap, robot};
-use crate::operator::snapshot::gap::{Finding, Verdict};
+use crate::operator::snapshot::gap::{Finding, NamedEffect, Verdict};
 use crate::operator::{Action, CommissionAction, GapAction, MountAction, Screen};
 
 /// Where commissioning is, and what comes next.
@@ -197,8 +197,12 @@ fn mount(view: &View) -> Said {
 /// What is found is added; the touches of the check tell whether that helped.
 /// What was found and what it is good for; all of it stands in the panes of the gap.
 fn in_short(finding: &Finding, addable: &[usize]) -> String {
-    let named = addable.iter().filter_map(|index| finding.effects.get(*index));
-    let names: Vec<String> = named.map(crate::operator::words::effect::short).collect();
+    let named: Vec<&NamedEffect> = addable.iter().filter_map(|index| finding.effects.get(*index)).collect();
+    // The names of several stand on their cards.
+    let names = match named.as_slice() {
+        [one] => one.title.clone(),
+        several => format::count(several.len(), "effect"),
+    };
     let closed = crate::operator::words::gap::on_held_out(finding, "On touches that were held out");
     let closed = closed.map_or_else(String::new, |closed| format!(" {closed}"));
     // What only closes a part of the gap is no name for it.
@@ -208,7 +212,8 @@ fn in_short(finding: &Finding, addable: &[usize]) -> String {
         Verdict::Class => "Found, though other names fit as well:",
         Verdict::NoGap | Verdict::Named => "Found:",
     };
-    format!("{found} {}.{closed} Adding puts it into the model in use; nothing moves.", names.join(", "))
+    let it = if named.len() == 1 { "it" } else { "them" };
+    format!("{found} {names}.{closed} Adding puts {it} into the model in use; nothing moves.")
 }
 
 fn effects(view: &View) -> Said {

@@ -59,7 +59,7 @@ fn a_published_method_with_the_left_hand_is_refused_with_the_reason() {
     assert!(!allowed.text.contains("right hand only"));
     // It goes by named effects, of which there are none.
     assert_eq!(allowed.state, GateState::Doubtful);
-    assert!(allowed.text.contains("No effect was found and added yet"), "{}", allowed.text);
+    assert!(allowed.text.contains("No effect is in use"), "{}", allowed.text);
     state.apply(Command::Grasp(GraspCommand::Method(Method::M4)));
     let refused = gate(&mut state);
     assert_eq!(refused.state, GateState::Shut);

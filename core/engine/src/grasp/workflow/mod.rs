@@ -19,6 +19,7 @@ use super::progress::Progress;
 use super::sights::Sights;
 use super::stepwise::StopAfterEach;
 use super::view::{AttemptView, GraspView, PlannedGrasp};
+use super::waits::Waits;
 use super::work::{Context, GraspResult, GraspWork};
 use crate::ground::jobs::JobId;
 use crate::ground::notice::NoticeLevel;
@@ -66,6 +67,10 @@ pub struct GraspWorkflow {
     closed_at_m: Option<[f64; 3]>,
     /// What the hand holds, while it is looked whether it still does.
     pub(super) held: Option<HeldWatch>,
+    /// How a hand was left.
+    pub(super) waits: Option<Waits>,
+    /// Whether a hand was moved by itself since the last attempt.
+    pub(super) hand_moved: bool,
 }
 
 /// What became of an attempt during which the program ended; `None`: it came to its end.
@@ -98,6 +103,8 @@ impl GraspWorkflow {
             sights: Sights::default(),
             closed_at_m: None,
             held: None,
+            waits: None,
+            hand_moved: false,
         }
     }
 
@@ -168,8 +175,11 @@ impl Workflow for GraspWorkflow {
             }
             GraspResult::Planned(proposed) => self.planned(*proposed, around, context),
             GraspResult::Grasped(done) => self.grasped(*done, &summary, around, context),
-            GraspResult::HandDone(_, done) => {
+            GraspResult::HandDone(step, done) => {
                 self.plan = None;
+                self.hand_moved = true;
+                let of = (&*around.described, self.hand());
+                self.waits = Waits::after_step((step, &done), self.waits.as_ref(), of, &around.robot);
                 if done.is_err() {
                     context.notices.add(NoticeLevel::Warning, summary);
                 }

@@ -7,6 +7,7 @@ use crate::grasp::around::GraspAround;
 use crate::grasp::attempt::{CarriedOut, Proposed};
 use crate::grasp::held::HeldWatch;
 use crate::grasp::view::{AttemptView, SinceHeld};
+use crate::grasp::waits::Waits;
 use crate::grasp::work::{Context, GraspWork};
 use crate::ground::notice::NoticeLevel;
 
@@ -45,6 +46,8 @@ impl GraspWorkflow {
             context.notices.add(NoticeLevel::Warning, text);
         }
         self.plan = None;
+        self.hand_moved = false;
+        self.waits = Waits::after_attempt(&attempt, self.waits.as_ref(), &around.robot);
         self.closed_at_m = attempt.closed_at_m.or(self.closed_at_m);
         self.held = match attempt.outcome {
             Some(Outcome::Success) => {

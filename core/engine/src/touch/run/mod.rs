@@ -265,7 +265,7 @@ impl Run {
     }
 
     /// Time that the rest takes at the pace so far; before there is one, as estimated. `None` where no touch is left.
-    /// What the touch under way has taken by now is taken from it, so that it runs while the arm does.
+    /// What the touch under way has taken by now is taken from it, so that it runs while the arm does, and not while the run is paused.
     pub fn remaining(&self, now: Instant) -> Option<Duration> {
         if self.left() == 0 {
             return None;
@@ -282,8 +282,9 @@ impl Run {
         let each_s = of_pace.iter().sum::<f64>() / of_pace.len().max(1) as f64;
         let each_s = if of_pace.is_empty() { median_s } else { each_s };
         // Of a touch that takes longer than they do at a time a part is left until it is done.
-        let under_way_s =
-            newest.last().map_or(0.0, |last| now.saturating_duration_since(*last).as_secs_f64());
+        let works = matches!(self.phase, Phase::Working);
+        let last = newest.last().filter(|_| works);
+        let under_way_s = last.map_or(0.0, |last| now.saturating_duration_since(*last).as_secs_f64());
         let taken_s = under_way_s.min(MOST_TAKEN * each_s);
         Duration::try_from_secs_f64(each_s * self.left() as f64 - taken_s).ok()
     }

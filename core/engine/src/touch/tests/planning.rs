@@ -148,6 +148,16 @@ fn what_corrects_targets_is_the_same_after_a_restart() {
     drop(desk);
     let mut desk = Desk::new(folder.path());
     assert_eq!(desk.view().correct_with, Some(Correction::Effects));
+    // Where all were taken back meanwhile there is nothing to correct with, and targets are planned all the same.
+    desk.start(grid(2, 1));
+    let view = desk.view();
+    assert!(
+        view.correct_with.is_none() && view.plan.is_some_and(|plan| plan.reachable > 0),
+        "{}",
+        desk.said()
+    );
+    desk.touch_all();
+    desk.apply(TouchCommand::Close);
     desk.apply(TouchCommand::CorrectWith(None));
     drop(desk);
     let mut desk = Desk::new(folder.path());

@@ -272,4 +272,11 @@ fn the_time_left_follows_the_pace() {
     desk.wait(Duration::from_secs(3600));
     let left = desk.view().remaining.expect("touches are left");
     assert!((24.0..26.0).contains(&left.as_secs_f64()), "{left:?}");
+    // Not while nothing moves: the touch under way is made again.
+    let order = desk.order().expect("an order");
+    desk.say(&order, TouchRun::Interrupted("STOP was pressed.".to_owned()));
+    for _ in 0..2 {
+        assert_eq!(desk.view().remaining.map(|left| left.as_secs()), Some(3 * 12));
+        desk.wait(Duration::from_secs(7));
+    }
 }

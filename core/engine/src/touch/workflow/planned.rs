@@ -26,6 +26,10 @@ impl TouchWorkflow {
         context: &mut Context<'_>,
     ) -> Result<(), Refusal> {
         self.no_run_under_way()?;
+        // Chosen in an earlier run of the program, and taken back since.
+        if self.correct_with == Some(Correction::Effects) && around.model.added().is_nominal() {
+            self.correct_with = None;
+        }
         let corrector = match self.correct_with {
             None => Corrector::None,
             Some(Correction::Model(method)) => Corrector::Model(model_of(around, method)?),

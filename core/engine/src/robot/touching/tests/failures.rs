@@ -146,7 +146,7 @@ fn joints_that_were_not_heard_end_it_as_what_may_be_tried_again() {
             bench.arm().motion = Motion::Holding(reason.clone());
             let end = bench.until_end(|_| {});
             let TouchRun::Unheard(text) = end else { panic!("{reason:?}: {end:?}") };
-            assert!(text.contains("Right elbow") && text.contains("holds where it is"), "{text}");
+            assert!(text.contains("Right elbow") && text.contains("was held where it was"), "{text}");
             stands(&mut bench);
         }
     }
