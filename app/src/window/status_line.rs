@@ -180,7 +180,9 @@ fn running(view: &View, job: &JobView, Stands { resting, keys }: Stands, ui: &mu
     let stops = if moves(view) { ". The robot moves; Esc or space stops." } else { "" };
     let sentence = format!("{}: {doing}{stops}", job.title);
     let sentence = by_keys(&sentence, keys);
-    let progress = ProgressLine::job(&sentence, *fraction).time_left(*remaining);
+    // Steps of a hand take as long as the arm and the eyes need: how many are done says little of how long.
+    let left = remaining.filter(|_| !view.grasp.phase.moves());
+    let progress = ProgressLine::job(&sentence, *fraction).time_left(left);
     // Who hammers the button that began it does not cancel it.
     let progress = progress.cancelling(*cancelling).resting(resting);
     let asked = ui.with_layout(Layout::left_to_right(Align::Center), |ui| progress.show(ui)).inner;

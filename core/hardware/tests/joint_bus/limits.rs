@@ -63,7 +63,7 @@ fn a_blocked_joint_holds_the_arm_and_its_goal_stays_near() {
 fn a_joint_that_only_creeps_holds_the_arm() {
     let (rig, chain, driver) = ready();
     let pan = joint(&rig, "head_z");
-    chain.lock().servos.get_mut(&id_of(&rig, pan)).expect("there").fastest_rad_s = 0.01;
+    chain.lock().servos.get_mut(&id_of(&rig, pan)).expect("there").fastest_rad_s = 0.004;
     let outcome = run(&driver, pan, 0.8, 0.3);
     let MoveOutcome::Held(HoldReason::NotFollowing { joint, since, .. }) = outcome else {
         panic!("{outcome:?}")
