@@ -3,6 +3,8 @@
 //! The pad gives back what is asked for right now, and nothing as soon as anything is released,
 //! the window loses the keyboard, or the pad is disabled.
 
+use std::sync::Arc;
+
 use egui::{
     Align2, EventFilter, Id, Key, Pos2, Rect, Response, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo,
     pos2, vec2,
@@ -164,6 +166,10 @@ impl<'a> JogPad<'a> {
             true => (PAD_WIDTH, 3.0, CELL, ENABLE_HEIGHT),
             false => (NARROW_WIDTH, 5.0, NARROW_CELL, NARROW_ENABLE_HEIGHT),
         };
+        // A long reason has all of its lines.
+        let enable_height = self
+            .why_galley(ui, width)
+            .map_or(enable_height, |galley| enable_height.max(galley.size().y + 2.0 * space::S));
         let height = rows * cell.y + (rows - 1.0) * GAP + 2.0 * space::S + enable_height;
         let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
         let label = format!("Jog the {}", self.what);
@@ -203,7 +209,7 @@ impl<'a> JogPad<'a> {
             button.on_hover_text(format!("{}: {}, while Shift is held", direction.word, direction.key_name));
         }
         keep_arrows(ui, &enable);
-        self.paint_enable(ui, &enable, enabled, intent.as_ref());
+        self.paint_enable(ui, &enable, enabled, wanted.contains(&true), intent.as_ref());
         if enabled || wanted.contains(&true) {
             // What is released must be seen at once, also when nothing else happens.
             ui.ctx().request_repaint();
@@ -214,7 +220,22 @@ impl<'a> JogPad<'a> {
         JogPadResponse { response, intent, enabled }
     }
 
-    fn paint_enable(&self, ui: &Ui, response: &Response, enabled: bool, intent: Option<&JogIntent>) {
+    /// Why nothing can be moved, as wide as the pad has room for it.
+    fn why_galley(&self, ui: &Ui, width: f32) -> Option<Arc<egui::Galley>> {
+        let small = theme::font(ui, &TextStyle::Small);
+        let wrap = width - 52.0;
+        let lay = |why: &str| ui.painter().layout(why.to_owned(), small, theme::tokens(ui).text, wrap);
+        self.why_not.map(lay)
+    }
+
+    fn paint_enable(
+        &self,
+        ui: &Ui,
+        response: &Response,
+        enabled: bool,
+        wants: bool,
+        intent: Option<&JogIntent>,
+    ) {
         let tokens = theme::tokens(ui);
         let painter = ui.painter();
         let rect = response.rect;
@@ -225,9 +246,7 @@ impl<'a> JogPad<'a> {
             painter.rect_stroke(rect, 6.0, Stroke::new(1.5, tokens.accent), StrokeKind::Inside);
         }
         let small = theme::font(ui, &TextStyle::Small);
-        if let Some(why_not) = self.why_not {
-            let wrap = rect.width() - 52.0;
-            let galley = painter.layout(why_not.to_owned(), small, tokens.text, wrap);
+        if let Some(galley) = self.why_galley(ui, rect.width()) {
             glyph::paint(
                 painter,
                 pos2(rect.left() + 20.0, rect.center().y),
@@ -243,6 +262,9 @@ impl<'a> JogPad<'a> {
             (true, Some(intent)) => ("Moving".to_owned(), describe(intent)),
             (true, None) => ("Enabled".to_owned(), "press a direction".to_owned()),
             // Which key is which direction stands at each button, where it is pointed at.
+            (false, _) if wants => {
+                ("Hold Shift, too".to_owned(), "a direction alone moves nothing".to_owned())
+            }
             (false, _) => ("Hold to move".to_owned(), "or hold Shift over this pad".to_owned()),
         };
         let strong = theme::strong_font(ui);

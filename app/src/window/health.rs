@@ -283,15 +283,13 @@ fn model_lamp(view: &View) -> Option<TopLamp> {
     let named = gap.model.effects.iter().filter(|effect| effect.is_named && !effect.is_left_out);
     let kind = |effect: &'_ AddedEffect| effect.name.split('@').next().unwrap_or_default().to_owned();
     let mut kinds: Vec<String> = named.map(kind).collect();
-    let count = kinds.len();
     kinds.sort_unstable();
     kinds.dedup();
     // What has one name for every joint counts once, as where it was added.
-    let value = match count {
+    let value = match kinds.len() {
         0 if gap.model.effects.iter().all(|effect| effect.is_left_out) => "left out".to_owned(),
         0 => "small shares".to_owned(),
-        _ if kinds.len() < count => format::count(kinds.len(), "kind"),
-        _ => count.to_string(),
+        kinds => kinds.to_string(),
     };
     Some(TopLamp { name: "Effects", value, health, reason, then: Then::Go(Screen::Gap) })
 }

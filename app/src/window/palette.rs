@@ -65,7 +65,7 @@ impl Palette {
         if super::status_line::moves(view) {
             let warning = Role::Warning.color(theme::tokens(ui));
             ui.label(
-                RichText::new("The robot moves: space stops it, here, too. One word finds it.")
+                RichText::new("The robot moves: space and Esc stop it, here, too. One word finds it.")
                     .color(warning),
             );
         }

@@ -180,8 +180,9 @@ fn running(view: &View, job: &JobView, Stands { resting, keys }: Stands, ui: &mu
     let stops = if moves(view) { ". The robot moves; Esc or space stops." } else { "" };
     let sentence = format!("{}: {doing}{stops}", job.title);
     let sentence = by_keys(&sentence, keys);
-    // Steps of a hand take as long as the arm and the eyes need: how many are done says little of how long.
-    let left = remaining.filter(|_| !view.grasp.phase.moves());
+    // Steps of a hand, and looks at it, take as long as the arm and the eyes need: how many are done says little of how
+    // long.
+    let left = remaining.filter(|_| !view.grasp.phase.moves() && !view.handeye.is_looking);
     let progress = ProgressLine::job(&sentence, *fraction).time_left(left);
     // Who hammers the button that began it does not cancel it.
     let progress = progress.cancelling(*cancelling).resting(resting);

@@ -6,7 +6,7 @@ use plumbline_widgets::theme::{self, space};
 
 use crate::operator::actions::undo::undo;
 use crate::operator::words::capitalized;
-use crate::operator::{Action, Outbox, Screen, shortcut_text};
+use crate::operator::{Action, GapAction, Outbox, Screen, shortcut_text};
 use crate::panels::rest::Rest;
 
 pub(super) const HEIGHT: f32 = 40.0;
@@ -30,6 +30,16 @@ pub(super) fn show(view: &View, screen: Screen, rest: &mut Rest<()>, ui: &mut Ui
                 // Pressed twice at once it would take back two results, the second one unseen.
                 rest.begin(ui.ctx());
                 outbox.act(Action::Undo);
+            }
+            // Where the robot model can be taken back, what was taken back last can be put back.
+            let redo = GapAction::Redo;
+            let is_there = matches!(screen, Screen::Gap | Screen::HandEye | Screen::Timeline);
+            if is_there && redo.refusal(view).is_none() {
+                let button = ui.add_enabled(!rests, Button::new("Put back")).on_hover_text(redo.label());
+                if button.clicked() {
+                    rest.begin(ui.ctx());
+                    outbox.act(Action::Gap(redo));
+                }
             }
             if let Ok(undo) = &undo {
                 ui.add(Label::new(theme::small(ui, undo.of)).truncate());

@@ -120,7 +120,7 @@ fn curves_and_map_tell_their_newest_values_to_who_cannot_see_them() {
     let window = fake.window(on(Screen::Drift));
     assert!(says(&window, "How far places are off, mm: near 7.8, middle 15.5, far 31.0"));
     assert!(shows(&window, "Drift over the table"));
-    assert!(says(&window, "Off at the last look"));
+    assert!(says(&window, "Matches off, as told last"));
 }
 
 /// Places of the grid that come out farther away than they are, by so many times what the paper saw.

@@ -29,7 +29,7 @@ pub use models::{ModelsAction, too_few, too_few_for, training_refusal};
 pub use names::format_name;
 pub use robot::{MountAction, RobotAction, default_scenario, led_by};
 pub use timeline::TimelineAction;
-pub use touch::{Preset, TouchAction, is_under_way, needs_window, screen_of, usual_area};
+pub use touch::{Preset, TouchAction, full_hand, is_under_way, needs_window, screen_of, usual_area};
 pub use trials::TrialsAction;
 
 use plumbline_engine::{ExportFormat, Exported, WatchedThread};

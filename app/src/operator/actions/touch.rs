@@ -294,8 +294,8 @@ fn start_refusal(view: &View) -> Refusal {
     full_hand(view).or_else(|| limp(view)).or_else(|| arm_refusal(view))
 }
 
-/// A finger that touches would drop what the hand holds, onto the screen.
-fn full_hand(view: &View) -> Refusal {
+/// Why hands that hold something, or may, do not touch: a finger that touches would drop it, onto the screen.
+pub fn full_hand(view: &View) -> Refusal {
     if matches!(view.grasp.hand_waits, Some(HandWaits::Around | HandWaits::Carries)) {
         return Some("fingers may be around something: open the hand first, on the screen Grasp".into());
     }

@@ -143,7 +143,8 @@ fn in_doubt(view: &View) -> bool {
 
 /// What that is.
 fn doubt(view: &View) -> Option<&str> {
-    let is_doubt = |gate: &&Gate| gate.of == Need::Places && gate.state == GateState::Doubtful;
+    let of_places = |gate: &Gate| matches!(gate.of, Need::Places | Need::Warmth);
+    let is_doubt = |gate: &&Gate| of_places(gate) && gate.state == GateState::Doubtful;
     view.grasp.gates.iter().find(is_doubt).map(|gate| gate.text.as_str())
 }
 

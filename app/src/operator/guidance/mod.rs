@@ -43,6 +43,11 @@ pub fn guidance(view: &View, screen: Screen) -> Guidance {
     if let Some(guidance) = stopped(view, screen) {
         return guidance;
     }
+    // Limp joints sink, whatever else there is to do.
+    let uses_arm = matches!(screen, Screen::Commission | Screen::HandEye);
+    if let Some(guidance) = robot::limp(&view.robot).filter(|_| uses_arm) {
+        return guidance;
+    }
     let with_scene = matches!(screen, Screen::Live | Screen::Mount);
     if let Some(guidance) = robot::under_way(view).filter(|_| with_scene) {
         return guidance;

@@ -12,10 +12,11 @@ use plumbline_widgets::format;
 use super::onward::to_grasping;
 use super::robot;
 use super::sentence::{Guidance, say};
+use crate::operator::actions::full_hand;
 use crate::operator::snapshot::models::FEWEST_FOR_A_NETWORK;
 use crate::operator::words::grasp::is_on_twin;
 use crate::operator::words::proof::{Proof, Worth, model_was_better};
-use crate::operator::words::{self, capitalized};
+use crate::operator::words::{self, capitalized, sentence};
 use crate::operator::{Action, Preset, Screen, TouchAction, is_under_way, needs_window};
 
 pub(super) fn touch(view: &View) -> Guidance {
@@ -40,6 +41,9 @@ pub(super) fn touch(view: &View) -> Guidance {
 /// The arm stands: what begins, or goes on, or is read.
 fn standing(view: &View) -> Guidance {
     let touch = &view.touch;
+    if let (TouchPhase::Planned | TouchPhase::Paused { .. }, Some(why)) = (&touch.phase, full_hand(view)) {
+        return say(sentence(&why)).warn().then("Go to Grasp", Action::Go(Screen::Grasp));
+    }
     match &touch.phase {
         TouchPhase::Planning => say("Looks which targets the arm reaches. Nothing moves."),
         TouchPhase::Planned | TouchPhase::Paused { .. } if needs_window(view) => {

@@ -111,7 +111,7 @@ fn small_first(text: &str) -> String {
 fn what_for(step: CommissionStep) -> &'static str {
     match step {
         CommissionStep::Eyes => "so that both eyes measure",
-        CommissionStep::Mount => "so that what they see is known in the robot's frame",
+        CommissionStep::Mount => "so that places are in the robot's frame",
         CommissionStep::Screen => "so that touches measure the arm",
         CommissionStep::Touches => "the rest is learned from them",
         CommissionStep::Effects => "so that the model moves as the arm does",

@@ -45,7 +45,7 @@ fn moved(ui: &mut Ui, view: &View) {
     }
     if let Some(vertical_px) = course.epipolar_px {
         group_heading(ui, "Between the eyes");
-        let row = KeyValue::text("Off at the last look", format::px(vertical_px))
+        let row = KeyValue::text("Matches off, as told last", format::px(vertical_px))
             .help("How far matched places leave the epipolar lines of the calibration in use. They are matched some ten times less finely than corners of a board");
         key_value_grid(ui, "drift between the eyes", &[row]);
     }

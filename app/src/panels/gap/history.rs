@@ -26,9 +26,6 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
                 if gap.model.can_undo {
                     undo_button(ui, cx, Subject::Effects);
                 }
-                if gap.model.can_redo {
-                    action_button(ui, cx, GapAction::Redo, "Put back");
-                }
                 if !gap.model.effects.is_empty() {
                     action_button(ui, cx, GapAction::Prove, "Prove it");
                     action_button(ui, cx, GapAction::UseNominal, "Take all effects out");

@@ -54,7 +54,9 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, run: &GraspRun) {
     if !facts.is_empty() {
         ui.label(theme::small(ui, closed(&facts.join(", "))));
     }
-    if matches!(outcome, GraspOutcome::Refused { .. }) || is_unseen(outcome) {
+    // What was never lifted was not held: nobody has to say so.
+    let never_lifted = is_halted(outcome) && run.seconds.is_none();
+    if matches!(outcome, GraspOutcome::Refused { .. }) || is_unseen(outcome) || never_lifted {
         return;
     }
     ui.add_space(space::XS);

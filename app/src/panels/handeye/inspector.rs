@@ -13,7 +13,7 @@ pub fn show(ui: &mut Ui, view: &View, outbox: &mut Outbox) {
     group_heading(ui, "What it is good for");
     ui.label(theme::small(
         ui,
-        "The model in use then says where a hand is in what the eyes see. M5 grasps by it; places and moves use it, too.",
+        "The model in use then says where a hand is in what the eyes see. Grasping (by the method M5) goes by it; places and moves use it, too.",
     ));
     ui.label(theme::small(ui, "Taken back like any step of the model: Gap, History."));
 }

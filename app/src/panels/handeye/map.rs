@@ -20,6 +20,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let Some(summary) = view.proposal.as_ref().or(view.in_use.as_ref()) else {
         let title = match view.is_looking {
             true => "The hands are being looked at",
+            false if view.stale.is_some() => "What the eyes saw of the hands is not in use",
             false => "No hands were looked at yet",
         };
         let message = plumbline_widgets::empty::Message::new(

@@ -9,8 +9,8 @@ use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::key_value::big_figure;
 use plumbline_widgets::theme::{self, Role, space};
 
+use crate::operator::HandEyeAction;
 use crate::operator::words::clock;
-use crate::operator::{GapAction, HandEyeAction};
 use crate::panels::parts::{action_button, warning};
 use crate::panels::{PanelContext, padded};
 
@@ -51,8 +51,8 @@ fn taken_back(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     if let Some(why) = &cx.view.handeye.stale {
         warning(ui, why);
     }
-    ui.label(theme::weak(ui, "What was taken back of the robot model last can be put back; nothing moves."));
-    action_button(ui, cx, GapAction::Redo, "Put back");
+    let how = "What was taken back of the robot model last can be put back, beside Undo; nothing moves.";
+    ui.label(theme::weak(ui, how));
 }
 
 /// One line per part, while they are looked at, or were until it was broken off.

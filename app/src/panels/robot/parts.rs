@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::time::Duration;
 
 use egui::Ui;
-use plumbline_engine::view::{Connection, RobotView};
+use plumbline_engine::view::{Connection, MotionState, RobotView};
 use plumbline_engine::{Destination, RobotCommand};
 use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::format;
@@ -122,6 +122,10 @@ pub fn cannot_jog(robot: &RobotView) -> Option<Cow<'static, str>> {
     }
     if robot.measured.is_none() {
         return Some("the joints have not been read yet".into());
+    }
+    // A jog itself has no end that it could be a share of.
+    if matches!(robot.motion, MotionState::Moving { fraction: Some(_), .. }) {
+        return Some("a move is under way: stop it, or wait until the arm stands".into());
     }
     let rig = robot.rig.as_ref()?;
     let arm = rig.arms.iter().find(|arm| arm.tips.iter().any(|tip| tip.link == robot.tip))?;

@@ -73,22 +73,18 @@ impl RigModel {
         (named, self.contents.effects.len() - named)
     }
 
-    /// The named effects, counted for people. A name that was given to every joint is sized joint by joint: "7 effects of
-    /// 2 kinds".
+    /// The named effects, counted for people. A name that was given to every joint is sized joint by joint: "2 effects
+    /// (7 joint by joint)".
     pub fn named_in_words(&self) -> String {
         let named = self.contents.effects.iter().filter(|effect| self.is_named(effect));
         let mut kinds: Vec<&str> = named.map(|effect| effect.id.as_str()).collect();
         let count = kinds.len();
         kinds.sort_unstable();
         kinds.dedup();
-        let effects = plumbline_model::counted(count, "effect");
-        if kinds.len() == count {
-            return effects;
-        }
-        format!("{effects} of {}", plumbline_model::counted(kinds.len(), "kind"))
+        let effects = plumbline_model::counted(kinds.len(), "effect");
+        if kinds.len() == count { effects } else { format!("{effects} ({count} joint by joint)") }
     }
 
-    /// Whether nothing is added: predictions are nominal.
     /// Whether the errors of a step of the history are rms along the glass and in height, as of all that is usually wrong
     /// with arms, fitted together; else they are means along the glass, as of a search.
     pub fn is_rms(&self, step: usize) -> bool {

@@ -8,7 +8,7 @@ use plumbline_report::HistoryEntry;
 use super::view::{AddedEffect, GapModelView, ModelStep};
 use crate::rig_models;
 
-/// "nominal", "nominal + 2 effects", "nominal + 7 effects of 2 kinds and small shares".
+/// "nominal", "nominal + 2 effects", "nominal + 2 effects (7 joint by joint) and small shares".
 pub fn name(model: &RigModel) -> String {
     match model.named_and_shares() {
         (0, 0) => "nominal".to_owned(),

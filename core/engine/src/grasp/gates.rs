@@ -180,6 +180,7 @@ fn load(around: &GraspAround, arm: &str) -> Gate {
 
 fn eyes(around: &GraspAround) -> Gate {
     match &around.source.status {
+        SourceStatus::None => closed(Need::Eyes, "No eyes are open: open them at the top left."),
         _ if !around.own_eyes => closed(
             Need::Eyes,
             "The images are not those of this robot's eyes: open its eyes at the top left.",
@@ -188,9 +189,7 @@ fn eyes(around: &GraspAround) -> Gate {
         SourceStatus::Opening => closed(Need::Eyes, "The eyes are being opened: wait a moment."),
         SourceStatus::Lost { reason, .. } => closed(Need::Eyes, reason.clone()),
         SourceStatus::Paused => closed(Need::Eyes, "The eyes are held still: let them go on."),
-        SourceStatus::None | SourceStatus::Ended => {
-            closed(Need::Eyes, "No eyes are open: open them at the top left.")
-        }
+        SourceStatus::Ended => closed(Need::Eyes, "No eyes are open: open them at the top left."),
     }
 }
 

@@ -10,6 +10,7 @@ use super::around::GraspAround;
 use super::gates::{full_hand, gates, may_hold};
 use super::method::methods;
 use super::view::{Gate, GraspPhase, GraspView, HandChoice, HandWaits, InHand};
+use super::waits::stands_in_view;
 use super::workflow::{GraspWorkflow, What};
 use crate::ground::step::StepState;
 
@@ -48,7 +49,15 @@ impl GraspWorkflow {
 
     /// How a hand was left, unless it was moved since, or holds something that is known.
     pub fn waits(&self, around: &GraspAround) -> Option<HandWaits> {
-        self.waits.as_ref().filter(|_| self.held.is_none())?.now(&around.robot)
+        let (rig, robot) = (&around.described, &around.robot);
+        if self.held.is_some() {
+            return None;
+        }
+        match &self.waits {
+            Some(waits) => waits.now(rig, robot),
+            // Wherever it was brought, or sank to.
+            None => stands_in_view(rig, self.hand(), robot).then_some(HandWaits::InView),
+        }
     }
 
     /// What is looked at before anything moves; what is in a hand is among it.

@@ -6,16 +6,19 @@ use plumbline_model::robot::{Posture, Rig};
 use super::command::HandStep;
 use super::steps::NoStep;
 use super::view::{AttemptView, GraspOutcome, HandWaits};
-use crate::robot::view::RobotView;
+use crate::robot::view::{MotionState, RobotView};
 
 /// An arm whose joints stand elsewhere by more than this was moved since, rad.
 const MOVED_RAD: f64 = 0.2;
 /// An arm that is farther from home stands in the picture, rad.
 const AWAY_RAD: f64 = 0.3;
+/// Fingers that are bent by more are not open, rad.
+const BENT_RAD: f64 = 0.25;
 
 /// How a hand was left, and where the joints were then.
 #[derive(Clone, Debug)]
 pub(super) struct Waits {
+    of: Hand,
     hand: HandWaits,
     at: Option<Posture>,
 }
@@ -38,14 +41,14 @@ impl Waits {
             Step::Lift | Step::Check if is_ended => HandWaits::Carries,
             _ => HandWaits::InView,
         };
-        Some(Self { hand, at: robot.measured.clone() })
+        Some(Self { of: attempt.hand, hand, at: robot.measured.clone() })
     }
 
     /// After a step of a hand; `before`: how it was left then.
     pub fn after_step(
         (step, done): (HandStep, &Result<(), NoStep>),
         before: Option<&Self>,
-        (rig, hand): (&Rig, Hand),
+        (rig, of): (&Rig, Hand),
         robot: &RobotView,
     ) -> Option<Self> {
         let was = before.map(|before| before.hand);
@@ -54,7 +57,7 @@ impl Waits {
             (_, Err(why)) if lets_go && had_begun(why) => HandWaits::Around,
             (_, Err(_)) => was?,
             (HandStep::Home, Ok(())) => return None,
-            (_, Ok(())) if !is_away(rig, hand, robot) => return None,
+            (_, Ok(())) if !is_away(rig, of, robot) => return None,
             (HandStep::Close, Ok(())) => HandWaits::Around,
             // Opened around what it was around.
             (HandStep::Open, Ok(())) if was == Some(HandWaits::Around) => HandWaits::Low,
@@ -63,19 +66,38 @@ impl Waits {
             }
             (_, Ok(())) => HandWaits::InView,
         };
-        Some(Self { hand, at: robot.measured.clone() })
+        Some(Self { of, hand, at: robot.measured.clone() })
     }
 
-    /// How it was left, unless it was moved since.
-    pub fn now(&self, robot: &RobotView) -> Option<HandWaits> {
-        let was = self.at.as_ref().zip(robot.measured.as_ref());
-        was.is_none_or(|(was, is)| was.distance_rad(is) < MOVED_RAD).then_some(self.hand)
+    /// How it stands now. Fingers that may be around something stay so until they are open, wherever the arm went: limp
+    /// joints sink, and hold what they are around all the same.
+    pub fn now(&self, rig: &Rig, robot: &RobotView) -> Option<HandWaits> {
+        let Some((arm, measured)) = rig.arm(self.of.name()).zip(robot.measured.as_ref()) else {
+            return Some(self.hand);
+        };
+        let closes = matches!(self.hand, HandWaits::Around | HandWaits::Carries);
+        if closes && arm.hand.iter().any(|joint| measured[*joint].abs() > BENT_RAD) {
+            return Some(self.hand);
+        }
+        let off_rad = |was: &Posture| {
+            arm.joints.iter().map(|joint| (was[*joint] - measured[*joint]).abs()).fold(0.0, f64::max)
+        };
+        let stands = self.at.as_ref().is_some_and(|was| off_rad(was) < MOVED_RAD);
+        match self.hand {
+            HandWaits::Around | HandWaits::Low if stands => Some(HandWaits::Low),
+            _ => is_away(rig, self.of, robot).then_some(HandWaits::InView),
+        }
     }
 }
 
 /// Whether a step that was not made had begun.
 fn had_begun(why: &NoStep) -> bool {
     matches!(why, NoStep::Halted(Halt::Stopped | Halt::Cancelled | Halt::Lost(_)) | NoStep::Blocked(_))
+}
+
+/// Whether an arm holds, and not at home.
+pub(super) fn stands_in_view(rig: &Rig, hand: Hand, robot: &RobotView) -> bool {
+    matches!(robot.motion, MotionState::Holding { .. }) && is_away(rig, hand, robot)
 }
 
 /// Whether an arm is known to stand elsewhere than at home.
@@ -91,12 +113,14 @@ mod tests {
 
     use super::*;
 
-    /// The right elbow turned so far from home.
-    fn at(turned_rad: f64) -> RobotView {
+    /// The right elbow turned so far from home, the fingers bent so far.
+    fn at(turned_rad: f64, bent_rad: f64) -> RobotView {
         let rig = default_rig();
         let elbow = rig.description.find_joint("r_elbow_y").expect("an elbow");
+        let hand = &rig.arm("right").expect("an arm").hand;
         let home = rig.home();
-        let measured = home.with(&[elbow], &[home[elbow] + turned_rad]);
+        let measured =
+            home.with(&[elbow], &[home[elbow] + turned_rad]).with(hand, &vec![bent_rad; hand.len()]);
         RobotView { measured: Some(measured), ..RobotView::default() }
     }
 
@@ -117,59 +141,74 @@ mod tests {
         Waits::after_step((step, &done), before, (&default_rig(), Hand::Right), robot)
     }
 
+    fn now(waits: Option<&Waits>, robot: &RobotView) -> Option<HandWaits> {
+        waits.and_then(|waits| waits.now(&default_rig(), robot))
+    }
+
     #[test]
     fn a_hand_that_was_stopped_around_a_thing_is_opened_lifted_and_brought_home() {
-        let robot = at(0.6);
-        let of = |step, failure| {
-            Waits::after_attempt(&attempt(step, failure), None, &robot).and_then(|waits| waits.now(&robot))
+        let (closed, open) = (at(0.6, 0.8), at(0.6, 0.0));
+        let of = |step, failure, robot| {
+            now(Waits::after_attempt(&attempt(step, failure), None, robot).as_ref(), robot)
         };
-        assert_eq!(of(Step::Close, Failure::Halted), Some(HandWaits::Around));
-        assert_eq!(of(Step::Lower, Failure::Halted), Some(HandWaits::Low));
-        assert_eq!(of(Step::Align, Failure::Halted), Some(HandWaits::InView));
-        assert_eq!(of(Step::Check, Failure::Slipped), Some(HandWaits::InView), "it closed around nothing");
-        assert_eq!(of(Step::Look, Failure::NotSeen), None, "nothing has moved");
+        assert_eq!(of(Step::Close, Failure::Halted, &closed), Some(HandWaits::Around));
+        assert_eq!(of(Step::Lift, Failure::Halted, &closed), Some(HandWaits::Carries));
+        assert_eq!(of(Step::Lower, Failure::Halted, &open), Some(HandWaits::Low));
+        assert_eq!(of(Step::Align, Failure::Halted, &open), Some(HandWaits::InView));
+        assert_eq!(of(Step::Check, Failure::Slipped, &closed), Some(HandWaits::InView), "around nothing");
+        assert_eq!(of(Step::Look, Failure::NotSeen, &open), None, "nothing has moved");
 
-        assert_eq!(of(Step::Lift, Failure::Halted), Some(HandWaits::Carries));
-
-        let stopped = Waits::after_attempt(&attempt(Step::Close, Failure::Halted), None, &robot);
-        let opened = after(HandStep::Open, Ok(()), stopped.as_ref(), &robot);
-        assert_eq!(opened.as_ref().and_then(|opened| opened.now(&robot)), Some(HandWaits::Low));
-        let lifted = after(HandStep::Lift, Ok(()), opened.as_ref(), &robot);
-        assert_eq!(lifted.as_ref().and_then(|lifted| lifted.now(&robot)), Some(HandWaits::InView));
-        let unseen = Waits::after_attempt(&attempt(Step::Look, Failure::NotSeen), lifted.as_ref(), &robot);
-        assert_eq!(unseen.and_then(|waits| waits.now(&robot)), Some(HandWaits::InView), "it did not move");
-        assert!(after(HandStep::Home, Ok(()), lifted.as_ref(), &at(0.0)).is_none());
+        let stopped = Waits::after_attempt(&attempt(Step::Close, Failure::Halted), None, &closed);
+        let opened = after(HandStep::Open, Ok(()), stopped.as_ref(), &open);
+        assert_eq!(now(opened.as_ref(), &open), Some(HandWaits::Low));
+        let lifted = after(HandStep::Lift, Ok(()), opened.as_ref(), &open);
+        assert_eq!(now(lifted.as_ref(), &open), Some(HandWaits::InView));
+        let unseen = Waits::after_attempt(&attempt(Step::Look, Failure::NotSeen), lifted.as_ref(), &open);
+        assert_eq!(now(unseen.as_ref(), &open), Some(HandWaits::InView), "it did not move");
+        assert!(after(HandStep::Home, Ok(()), lifted.as_ref(), &at(0.0, 0.0)).is_none());
     }
 
     #[test]
     fn what_a_hand_closed_around_and_lifted_is_put_down() {
-        let robot = at(0.6);
-        let closed = after(HandStep::Close, Ok(()), None, &robot);
-        assert_eq!(closed.as_ref().and_then(|closed| closed.now(&robot)), Some(HandWaits::Around));
-        let lifted = after(HandStep::Lift, Ok(()), closed.as_ref(), &robot);
-        assert_eq!(lifted.as_ref().and_then(|lifted| lifted.now(&robot)), Some(HandWaits::Carries));
-        let down = after(HandStep::Place, Ok(()), lifted.as_ref(), &robot);
-        assert_eq!(down.and_then(|down| down.now(&robot)), Some(HandWaits::InView));
+        let (shut, open) = (at(0.6, 0.8), at(0.6, 0.0));
+        let closed = after(HandStep::Close, Ok(()), None, &shut);
+        assert_eq!(now(closed.as_ref(), &shut), Some(HandWaits::Around));
+        let lifted = after(HandStep::Lift, Ok(()), closed.as_ref(), &shut);
+        assert_eq!(now(lifted.as_ref(), &shut), Some(HandWaits::Carries));
+        let down = after(HandStep::Place, Ok(()), lifted.as_ref(), &open);
+        assert_eq!(now(down.as_ref(), &open), Some(HandWaits::InView));
     }
 
     #[test]
     fn a_step_that_was_stopped_may_hold_and_one_that_never_began_changes_nothing() {
-        let robot = at(0.6);
-        let of =
-            |why: NoStep| after(HandStep::Place, Err(why), None, &robot).and_then(|waits| waits.now(&robot));
+        let robot = at(0.6, 0.8);
+        let of = |why: NoStep| now(after(HandStep::Place, Err(why), None, &robot).as_ref(), &robot);
         assert_eq!(of(Halt::Stopped.into()), Some(HandWaits::Around));
         assert_eq!(of(NoStep::Blocked("the thumb stays behind".to_owned())), Some(HandWaits::Around));
         assert_eq!(of(NoStep::NotGrasped), None);
     }
 
+    /// Joints that went limp and are held again are elsewhere, and the fingers around the thing still.
     #[test]
-    fn an_arm_that_was_moved_since_is_somewhere_else_and_one_at_home_waits_for_nothing() {
-        let waits = Waits::after_attempt(&attempt(Step::Close, Failure::Halted), None, &at(0.6));
-        let waits = waits.expect("around something");
-        assert_eq!(waits.now(&at(0.65)), Some(HandWaits::Around));
-        assert_eq!(waits.now(&at(0.1)), None);
-        assert_eq!(waits.now(&RobotView::default()), Some(HandWaits::Around), "nobody saw it move");
-        assert!(after(HandStep::Open, Ok(()), None, &at(0.0)).is_none());
-        assert!(after(HandStep::Place, Ok(()), None, &at(0.6)).is_some(), "it stands over what it put down");
+    fn fingers_that_may_hold_do_so_until_they_are_open_wherever_the_arm_went() {
+        let waits = Waits::after_attempt(&attempt(Step::Close, Failure::Halted), None, &at(0.6, 0.8));
+        for turned_rad in [0.65, 0.1, 1.2, 0.0] {
+            assert_eq!(now(waits.as_ref(), &at(turned_rad, 0.8)), Some(HandWaits::Around), "{turned_rad}");
+        }
+        assert_eq!(now(waits.as_ref(), &at(0.65, 0.0)), Some(HandWaits::Low), "opened by hand");
+        assert_eq!(now(waits.as_ref(), &at(1.2, 0.0)), Some(HandWaits::InView));
+        assert_eq!(now(waits.as_ref(), &at(0.0, 0.0)), None, "it is home");
+        assert_eq!(now(waits.as_ref(), &RobotView::default()), Some(HandWaits::Around), "nobody saw it move");
+        assert!(after(HandStep::Open, Ok(()), None, &at(0.0, 0.0)).is_none());
+        let holds =
+            |turned_rad| RobotView { motion: MotionState::Holding { why: None }, ..at(turned_rad, 0.0) };
+        let rig = default_rig();
+        assert!(
+            stands_in_view(&rig, Hand::Right, &holds(0.6)) && !stands_in_view(&rig, Hand::Right, &holds(0.1))
+        );
+        assert!(!stands_in_view(&rig, Hand::Left, &holds(0.6)), "the other arm is home");
+        assert!(!stands_in_view(&rig, Hand::Right, &at(0.6, 0.0)), "nobody knows whether it holds");
+        let over = after(HandStep::Place, Ok(()), None, &at(0.6, 0.0));
+        assert_eq!(now(over.as_ref(), &at(0.6, 0.0)), Some(HandWaits::InView), "over what it put down");
     }
 }

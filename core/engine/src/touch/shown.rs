@@ -123,7 +123,7 @@ impl TouchWorkflow {
             proposal_is_older: self
                 .proposal
                 .as_ref()
-                .is_some_and(|proposal| self.run.as_ref().is_some_and(|run| run.session != proposal.session)),
+                .is_some_and(|proposal| self.run.as_ref().is_none_or(|run| run.session != proposal.session)),
             correct_with: self.correct_with,
             source: source(&around.robot),
             window: self.window.clone(),

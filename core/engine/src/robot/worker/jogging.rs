@@ -11,6 +11,11 @@ use crate::robot::command::{JOG_DEADLINE_MS, JogRates};
 use crate::robot::jog::joint_rates;
 use crate::robot::unable::{FASTEST_JOG, NoDestination, Unable};
 
+/// An arm may hang so far from its goals by its own weight and what rubs, rad.
+const HANGS_RAD: f64 = 0.06;
+/// Goals that stand still are followed for so long: two cycles of the bus.
+const STILL_FOR: Duration = Duration::from_millis(32);
+
 /// Jogging: what is asked, until when, and where that leads.
 #[derive(Clone, Debug)]
 pub(in crate::robot) struct Jog {
@@ -49,17 +54,41 @@ impl Worker {
 
     pub(super) fn end_jog(&mut self) -> Result<(), Unable> {
         if self.jog.take().is_some() {
-            self.arm()?.hold()?;
+            self.rest()?;
         }
         Ok(())
+    }
+
+    /// What was asked for is over, and the arm rests at its goals. It hangs a little below them: held where it hangs, it
+    /// would sink as much once more. An arm that something keeps from its goals is held where it is.
+    fn rest(&self) -> Result<(), Unable> {
+        let arm = self.arm()?;
+        let joints = self.chain.joints();
+        let hangs = arm.state().and_then(|state| {
+            let (goals, angles) = state.commanded.as_ref().zip(state.measured.as_ref())?;
+            Some(joints.iter().map(|joint| (goals[*joint] - angles[*joint]).abs()).fold(0.0, f64::max))
+        });
+        if hangs.is_none_or(|hangs_rad| hangs_rad > HANGS_RAD) {
+            return Ok(arm.hold()?);
+        }
+        let still = Setpoint {
+            kind: SetpointKind::Velocity,
+            joints: joints.iter().map(|joint| (*joint, 0.0)).collect(),
+            valid_for: STILL_FOR,
+        };
+        Ok(arm.follow(still)?)
     }
 
     /// Sends the next joint speeds of a jog; ends it when its time is over or it would lead
     /// into something.
     pub(super) fn step_jog(&mut self, now: Instant) {
         let Some(mut jog) = self.jog.take() else { return };
-        if now >= jog.until || self.switches.stop.is_pressed() {
+        if self.switches.stop.is_pressed() {
             let _ = self.arm().map(|arm| arm.hold());
+            return;
+        }
+        if now >= jog.until {
+            let _ = self.rest();
             return;
         }
         let fastest = self.peak_speed_rad_s();
