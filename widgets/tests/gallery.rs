@@ -220,7 +220,7 @@ fn pixels_are_uploaded_once_while_nothing_changes() {
 #[test]
 fn figures_are_found_as_whole_rows() {
     let harness = dark("Inspector");
-    assert!(harness.query_by_label("baseline: 68.240 ± 0.031 mm").is_some());
+    assert!(harness.query_by_label("baseline: 68.240 ± 0.061 mm").is_some());
     assert!(harness.query_by_label("cross-validated: —").is_some());
 }
 

@@ -11,6 +11,10 @@ use crate::theme::{self, Tokens, space};
 /// Arrows may reach so far beyond the glass: fingers slip off.
 /// Narrower drawings leave out where the robot sits, pt.
 const WITH_ROBOT: f32 = 210.0;
+/// Wide enough for that and for how long errors are drawn …
+const WITH_BOTH: f32 = 320.0;
+/// … and for the size with that alone.
+const WITH_SCALE: f32 = 200.0;
 const REACH: f32 = 12.0;
 /// Room below for a line of words.
 pub(super) const BELOW: f32 = 20.0;
@@ -151,10 +155,12 @@ fn below(
         None => {
             let [width, height] = pattern.size_px;
             let size = format!("{width}×{height} px");
-            let below = rect.width() > WITH_ROBOT;
+            // How long an error is drawn goes before where the robot sits.
+            let has_errors = pattern.marks.iter().any(|mark| mark.error_px.is_some());
+            let below = rect.width() > if has_errors { WITH_BOTH } else { WITH_ROBOT };
             let text = if below { format!("{size}, the robot sits below") } else { size };
             word(rect.left(), Align2::LEFT_TOP, text, tokens.text_weak);
-            if pattern.marks.iter().any(|mark| mark.error_px.is_some()) && rect.width() > 320.0 {
+            if has_errors && rect.width() > WITH_SCALE {
                 scale(ui, transform, pattern, tokens);
             }
         }
