@@ -56,14 +56,16 @@ impl Waits {
         let hand = match (step, done) {
             (_, Err(why)) if lets_go && had_begun(why) => HandWaits::Around,
             (_, Err(_)) => was?,
-            (HandStep::Home, Ok(())) => return None,
+            // It goes home as it is: what it is around comes along.
+            (HandStep::Home | HandStep::Lift, Ok(()))
+                if matches!(was, Some(HandWaits::Around | HandWaits::Carries)) =>
+            {
+                HandWaits::Carries
+            }
             (_, Ok(())) if !is_away(rig, of, robot) => return None,
             (HandStep::Close, Ok(())) => HandWaits::Around,
             // Opened around what it was around.
             (HandStep::Open, Ok(())) if was == Some(HandWaits::Around) => HandWaits::Low,
-            (HandStep::Lift, Ok(())) if matches!(was, Some(HandWaits::Around | HandWaits::Carries)) => {
-                HandWaits::Carries
-            }
             (_, Ok(())) => HandWaits::InView,
         };
         Some(Self { of, hand, at: robot.measured.clone() })
@@ -175,6 +177,10 @@ mod tests {
         assert_eq!(now(closed.as_ref(), &shut), Some(HandWaits::Around));
         let lifted = after(HandStep::Lift, Ok(()), closed.as_ref(), &shut);
         assert_eq!(now(lifted.as_ref(), &shut), Some(HandWaits::Carries));
+        let home = after(HandStep::Home, Ok(()), lifted.as_ref(), &at(0.0, 0.8));
+        assert_eq!(now(home.as_ref(), &at(0.0, 0.8)), Some(HandWaits::Carries), "it comes along");
+        let opened = after(HandStep::Open, Ok(()), home.as_ref(), &at(0.0, 0.0));
+        assert_eq!(now(opened.as_ref(), &at(0.0, 0.0)), None);
         let down = after(HandStep::Place, Ok(()), lifted.as_ref(), &open);
         assert_eq!(now(down.as_ref(), &open), Some(HandWaits::InView));
     }
