@@ -121,6 +121,7 @@ pub struct JogPad<'a> {
     what: &'a str,
     why_not: Option<&'a str>,
     enabled_elsewhere: bool,
+    refused: bool,
 }
 
 /// What is asked for right now.
@@ -137,7 +138,7 @@ pub struct JogPadResponse {
 impl<'a> JogPad<'a> {
     /// A pad that moves `what`: "right hand".
     pub fn new(what: &'a str) -> Self {
-        Self { what, why_not: None, enabled_elsewhere: false }
+        Self { what, why_not: None, enabled_elsewhere: false, refused: false }
     }
 
     /// Why nothing can be moved now, and what to do; the pad gives nothing then.
@@ -149,6 +150,12 @@ impl<'a> JogPad<'a> {
     /// Whether an enable key that the pad does not see is held: the one of a gamepad.
     pub fn enabled_elsewhere(mut self, held: bool) -> Self {
         self.enabled_elsewhere = held;
+        self
+    }
+
+    /// Whether what is asked for was refused: why stands below the pad.
+    pub fn refused(mut self, refused: bool) -> Self {
+        self.refused = refused;
         self
     }
 
@@ -259,6 +266,7 @@ impl<'a> JogPad<'a> {
             return;
         }
         let (title, hint) = match (enabled, intent) {
+            (true, Some(_)) if self.refused => ("Does not move".to_owned(), "why stands below".to_owned()),
             (true, Some(intent)) => ("Moving".to_owned(), describe(intent)),
             (true, None) => ("Enabled".to_owned(), "press a direction".to_owned()),
             // Which key is which direction stands at each button, where it is pointed at.

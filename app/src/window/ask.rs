@@ -217,13 +217,21 @@ fn delete_all(ui: &mut Ui, count: usize) -> Asked {
 }
 
 fn close_while_moving(ui: &mut Ui, view: &View) -> Asked {
-    let held = "It is stopped first and holds where it is, with torque.";
+    // It may have come to rest since it was asked.
+    let (asks, held, closes) = match super::status_line::moves(view) {
+        true => (
+            "Close while the robot moves?",
+            "It is stopped first and holds where it is, with torque.",
+            "Stop and close",
+        ),
+        false => ("Close?", "The robot stands by now. It holds where it is, with torque.", "Close"),
+    };
     let about = match lost_by_closing(view) {
         Some(lost) => format!("{held} {lost}"),
         None => held.to_owned(),
     };
-    title(ui, "Close while the robot moves?", &about);
-    match buttons_with_care(ui, "Stop and close") {
+    title(ui, asks, &about);
+    match buttons_with_care(ui, closes) {
         Some(true) => Asked::HoldAndClose,
         Some(false) => Asked::Closed,
         None => Asked::Open,

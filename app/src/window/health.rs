@@ -280,9 +280,8 @@ fn model_lamp(view: &View) -> Option<TopLamp> {
         }
     };
     // The lamp has little room; its screen says all of it.
-    let named = gap.model.effects.iter().filter(|effect| effect.is_named && !effect.is_left_out);
-    let kind = |effect: &'_ AddedEffect| effect.name.split('@').next().unwrap_or_default().to_owned();
-    let mut kinds: Vec<String> = named.map(kind).collect();
+    let named = gap.model.effects.iter().filter(|effect| effect.counts());
+    let mut kinds: Vec<&str> = named.map(AddedEffect::kind).collect();
     kinds.sort_unstable();
     kinds.dedup();
     // What has one name for every joint counts once, as where it was added.

@@ -63,7 +63,7 @@ fn steps<'a>(
     for part in Part::ALL.into_iter().filter(|_| parts) {
         part_row(ui, view, part, screen, outbox);
     }
-    let mount = step("Mount", step_state(&view.mount.step)).number(2);
+    let mount = step("Mount", or_proposed(&view.mount.step, view.mount.proposal.is_some())).number(2);
     if why(mount.selected(screen == Screen::Mount).show(ui), view, Screen::Mount).clicked() {
         outbox.act(Action::Go(Screen::Mount));
     }
@@ -71,7 +71,7 @@ fn steps<'a>(
         ("Touch", 3, touch_state(view), Screen::Touch),
         ("Models", 4, models_state(view), Screen::Models),
         ("Gap", 5, gap_state(view), Screen::Gap),
-        ("Hand-eye", 6, step_state(&view.handeye.step), Screen::HandEye),
+        ("Hand-eye", 6, or_proposed(&view.handeye.step, view.handeye.proposal.is_some()), Screen::HandEye),
         ("Grasp", 7, step_state(&view.grasp.step), Screen::Grasp),
     ] {
         let one = step(name, state).number(number).selected(screen == target);
@@ -242,7 +242,17 @@ fn eyes_state(view: &View) -> StepState<'_> {
     if let Some(JobState::Running { fraction, .. }) = solving.map(|job| &job.state) {
         return StepState::Running(*fraction as f32);
     }
-    step_state(&view.eyes.step)
+    or_proposed(&view.eyes.step, view.eyes.proposal.as_ref().is_some_and(|open| open.stale.is_none()))
+}
+
+/// Where all that is missing is accepting what was solved.
+const PROPOSED: f32 = 0.75;
+
+fn or_proposed(step: &EngineStep, is_proposed: bool) -> StepState<'_> {
+    match step {
+        EngineStep::NotDone if is_proposed => StepState::Partly(PROPOSED),
+        step => step_state(step),
+    }
 }
 
 /// A run says how far it is.

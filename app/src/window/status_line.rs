@@ -177,7 +177,10 @@ fn contents(
 
 fn running(view: &View, job: &JobView, Stands { resting, keys }: Stands, ui: &mut Ui, outbox: &mut Outbox) {
     let JobState::Running { fraction, doing, remaining, cancelling } = &job.state else { return };
-    let stops = if moves(view) { ". The robot moves; Esc or space stops." } else { "" };
+    let stops = match moves(view) && !view.robot.rests_on_the_way && !view.grasp.phase.is_paused() {
+        true => ". The robot moves; Esc or space stops.",
+        false => "",
+    };
     let sentence = format!("{}: {doing}{stops}", job.title);
     let sentence = by_keys(&sentence, keys);
     // Steps of a hand, and looks at it, take as long as the arm and the eyes need: how many are done says little of how

@@ -9,8 +9,8 @@ use nalgebra::Point3;
 use plumbline::{PlumblineWindow, Screen, WindowSettings};
 use plumbline_engine::view::{
     BetweenSteps, Connection, DetectView, Gate, GateState, GraspHand, GraspMethod, GraspPhase, GraspRun,
-    GraspStep, GraspView, HandWaits, LampState, MotionState, Need, ObjectView, RobotView, StepState,
-    TouchPhase, TouchView, ToyView, TwinView,
+    GraspStep, GraspView, HandWaits, LampState, MotionState, Need, ObjectView, RobotView, StepNotMade,
+    StepState, TouchPhase, TouchView, ToyView, TwinView,
 };
 use plumbline_engine::{Command, Destination, GraspCommand, GraspTarget, HandStep, RobotCommand, View};
 use plumbline_model::frame::Point;
@@ -90,12 +90,30 @@ fn a_hand_that_was_stopped_is_led_home_step_by_step() {
     for (waits, words, step) in [
         (HandWaits::Around, "may be around something: open it first", HandStep::Open),
         (HandWaits::Carries, "may carry something", HandStep::Place),
+        (HandWaits::Offers, "Take what the hand holds out", HandStep::Open),
         (HandWaits::Low, "lift it straight up", HandStep::Lift),
         (HandWaits::InView, "stands in the picture", HandStep::Home),
     ] {
         let fake = Fake::over(with(GraspView { hand_waits: Some(waits), ..GraspView::default() }));
         let mut window = on_grasp(&fake);
         assert!(says(&window, words), "{words}");
+        window.run_steps(3);
+        window.key_press_modifiers(Modifiers::COMMAND, Key::Enter);
+        window.run_steps(2);
+        assert_eq!(fake.take_sent(), [Command::from(GraspCommand::Hand(step))]);
+    }
+    // What could not be done is not offered again.
+    for (waits, tried, step) in [
+        (HandWaits::Around, HandStep::Open, HandStep::Lift),
+        (HandWaits::Carries, HandStep::Place, HandStep::Give),
+        (HandWaits::Low, HandStep::Lift, HandStep::Home),
+    ] {
+        let not_made =
+            Some(StepNotMade { step: tried, why: "the thumb would run into touchscreen".to_owned() });
+        let grasp = GraspView { hand_waits: Some(waits), not_made, ..GraspView::default() };
+        let fake = Fake::over(with(grasp));
+        let mut window = on_grasp(&fake);
+        assert!(says(&window, "was not done: the thumb would run into touchscreen."), "{tried:?}");
         window.run_steps(3);
         window.key_press_modifiers(Modifiers::COMMAND, Key::Enter);
         window.run_steps(2);

@@ -8,7 +8,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use plumbline::{PlumblineWindow, Screen, ThemeChoice, WindowSettings};
 use plumbline_engine::view::{
-    BusView, Connection, InTheWay, MotionState, PortView, RobotView, TouchPhase, TouchView,
+    BusView, Connection, InTheWay, JointView, MotionState, PortView, RobotView, TouchPhase, TouchView,
 };
 use plumbline_engine::{Command, Destination, RobotCommand, View};
 
@@ -287,6 +287,33 @@ fn connecting_says_that_nothing_moves_and_keeps_the_sheet_open() {
     assert_eq!(cables, 1, "nobody is sent to look at the cables of those that are late");
     assert!(says(&window, "Servo 77 (MX-28) is not in the description of this robot"));
     assert!(says(&window, "latency timer"));
+}
+
+/// One joint that gives way is as much of a danger, and is not hidden behind all that hold.
+#[test]
+fn a_single_joint_that_goes_limp_is_asked_about_and_said() {
+    let fake = Fake::over(everything());
+    let mut window = fake.window(on_robot());
+    click(&mut window, "Right elbow");
+    click(&mut window, "Let this joint go limp…");
+    assert_eq!(robot_commands(&fake), []);
+    assert!(says(&window, "It sinks by its own weight"));
+    click(&mut window, "Let it go limp");
+    let asked = robot_commands(&fake);
+    assert!(
+        matches!(asked.as_slice(), [RobotCommand::Torque { joints, on: false }] if joints.len() == 1),
+        "{asked:?}"
+    );
+    let mut robot = connected();
+    let limp = |(i, joint): (usize, &JointView)| JointView { torque_on: Some(i != 5), ..joint.clone() };
+    robot.joints = robot.joints.iter().enumerate().map(limp).collect();
+    let fake = Fake::over(with_robot(robot));
+    let mut window = fake.window(on_robot());
+    assert!(says(&window, "is limp: it gives way, and sinks"));
+    window.run_steps(3);
+    window.key_press_modifiers(Modifiers::COMMAND, Key::Enter);
+    window.run_steps(2);
+    assert_eq!(robot_commands(&fake), [RobotCommand::Torque { joints: vec![], on: true }]);
 }
 
 #[test]

@@ -71,7 +71,7 @@ impl GraspAction {
             Self::Hand(HandStep::Close) => "Close the grasping hand",
             Self::Hand(HandStep::Lift) => "Lift the grasping hand",
             Self::Hand(HandStep::Place) => "Put down what is held",
-            Self::Hand(HandStep::Give) => "Hand over what is held",
+            Self::Hand(HandStep::Give) => "Hold out what is held, to be taken",
             Self::Hand(HandStep::Home) => "Bring the grasping arm home",
             Self::Held => "It was held",
             Self::NotHeld => "It was not held",

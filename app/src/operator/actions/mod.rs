@@ -8,6 +8,7 @@ mod grasp;
 mod grid;
 mod handeye;
 mod labels;
+mod let_go;
 mod models;
 mod names;
 mod refusal;

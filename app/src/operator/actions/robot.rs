@@ -247,6 +247,8 @@ fn to_be_warm_min(view: &View) -> f64 {
 pub fn led_by(view: &View) -> Option<&'static str> {
     if matches!(view.touch.phase, TouchPhase::Waiting { .. } | TouchPhase::Running { .. }) {
         Some("touches move the arm: pause them first")
+    } else if view.grasp.phase.is_paused() {
+        Some("a grasp holds the arm: go on with it or end it, on the screen Grasp")
     } else if view.grasp.phase.moves() || matches!(view.trials.phase, TrialsPhase::Running { .. }) {
         Some("a grasp moves the arm: pause it first")
     } else if view.mount.tour.is_some() || view.handeye.is_looking {
@@ -288,7 +290,10 @@ fn move_refusal(view: &View) -> Refusal {
     }
     match &robot.preview {
         None => Some("no move is shown: drag a joint or choose a pose".into()),
-        Some(preview) => preview.path.as_ref().err().map(|why| why.to_string().into()),
+        Some(preview) => match &preview.path {
+            Err(why) => Some(why.to_string().into()),
+            Ok(_) => super::let_go::would_drop(view, &preview.end),
+        },
     }
 }
 

@@ -166,7 +166,7 @@ impl TouchAction {
             Self::OpenUnfinished => "Open the unfinished run",
             Self::AcceptScreen => "Use this place of the screen",
             Self::DiscardScreen => "Discard the proposed place of the screen",
-            Self::NominalScreen => "Use the nominal place of the screen",
+            Self::NominalScreen => "Use the place of the screen as described",
             Self::ToggleWindow => "Touch window",
         }
     }
@@ -199,7 +199,7 @@ impl TouchAction {
             Self::AcceptScreen | Self::DiscardScreen => {
                 when(touch.placement_proposal.is_some(), "no place of the screen is proposed")
             }
-            Self::NominalScreen => when(touch.placement.is_some(), "the nominal place is in use"),
+            Self::NominalScreen => when(touch.placement.is_some(), "the described place is in use"),
             Self::ToggleWindow => {
                 when(screen_of(view).is_some(), "the robot's description has no touchscreen")
             }
@@ -296,7 +296,7 @@ fn start_refusal(view: &View) -> Refusal {
 
 /// Why hands that hold something, or may, do not touch: a finger that touches would drop it, onto the screen.
 pub fn full_hand(view: &View) -> Refusal {
-    if matches!(view.grasp.hand_waits, Some(HandWaits::Around | HandWaits::Carries)) {
+    if view.grasp.hand_waits.is_some_and(HandWaits::may_hold) {
         return Some("fingers may be around something: open the hand first, on the screen Grasp".into());
     }
     let held = view.grasp.held.as_ref()?;

@@ -2,7 +2,7 @@
 
 use plumbline_engine::view::{
     Gate, GateState, GraspOutcome, GraspPhase, GraspRun, GraspView, HandWaits, InHand, JointView, LampState,
-    Need, SinceHeld, TrialsPhase,
+    Need, SinceHeld, StepNotMade, TrialsPhase,
 };
 use plumbline_engine::{HandStep, View};
 use plumbline_widgets::format;
@@ -41,12 +41,12 @@ fn idle(view: &View) -> Guidance {
         return trouble;
     }
     if let Some(held) = &grasp.held {
-        return in_hand(held, grasp.run.as_deref());
+        return in_hand(grasp, held, grasp.run.as_deref());
     }
     // All else that is shut goes before: nothing moves then.
     let is_shut = grasp.shut().is_some_and(|gate| gate.of != Need::Hand);
     if let Some(waits) = grasp.hand_waits.filter(|_| !is_shut) {
-        return of_waiting(waits);
+        return of_waiting(grasp, waits);
     }
     if let Some(trouble) = grasp.trouble() {
         let limp = has_to_be_held(view);
@@ -107,8 +107,12 @@ fn idle(view: &View) -> Guidance {
 }
 
 /// What is around something is opened, and lifted straight up; then the arm leaves the picture.
-pub(super) fn of_waiting(waits: HandWaits) -> Guidance {
+pub(super) fn of_waiting(grasp: &GraspView, waits: HandWaits) -> Guidance {
+    if let Some(other) = grasp.not_made.as_ref().and_then(|not_made| instead(not_made, waits)) {
+        return other;
+    }
     let (sentence, step) = match waits {
+        HandWaits::Offers => return held_out(),
         HandWaits::Around => (
             "The hand was stopped where its fingers may be around something: open it first. What it holds falls.",
             HandStep::Open,
@@ -127,6 +131,35 @@ pub(super) fn of_waiting(waits: HandWaits) -> Guidance {
         ),
     };
     say(sentence).warn().then(step.title(), Action::Grasp(GraspAction::Hand(step)))
+}
+
+/// The hand opens only once somebody has what it holds.
+fn held_out() -> Guidance {
+    say("Take what the hand holds out; then open the hand. The fingers open at once, and what nobody has falls.")
+        .then(HandStep::Open.title(), Action::Grasp(GraspAction::Hand(HandStep::Open)))
+}
+
+/// What is offered where the step that would be offered could not be made; `None`: another was tried.
+fn instead(not_made: &StepNotMade, waits: HandWaits) -> Option<Guidance> {
+    let (advice, step) = match (waits, not_made.step) {
+        (HandWaits::Around, HandStep::Open | HandStep::Place) => {
+            ("Lifting takes what the fingers are around along.", HandStep::Lift)
+        }
+        (HandWaits::Around | HandWaits::Carries, HandStep::Lift) => {
+            ("The hand opens where it is; what it holds falls.", HandStep::Open)
+        }
+        (HandWaits::Carries, HandStep::Place) => (
+            "Handing over holds it out in front of the robot; the hand opens only when you say so.",
+            HandStep::Give,
+        ),
+        (HandWaits::Carries, HandStep::Give) => {
+            ("The hand opens where it is; what it holds falls: hold yours below.", HandStep::Open)
+        }
+        (HandWaits::Low, HandStep::Lift) => ("The arm goes home from where it is.", HandStep::Home),
+        _ => return None,
+    };
+    let said = format!("{} was not done: {}. {advice}", not_made.step.title(), not_made.why);
+    Some(say(said).warn().then(step.title(), Action::Grasp(GraspAction::Hand(step))))
 }
 
 /// Whether nothing but joints that have to be taken hold of keeps the arm from grasping: every joint is known.
@@ -149,7 +182,14 @@ fn doubt(view: &View) -> Option<&str> {
 }
 
 /// What is in a hand has to leave it before anything else is grasped.
-pub(super) fn in_hand(held: &InHand, run: Option<&GraspRun>) -> Guidance {
+pub(super) fn in_hand(grasp: &GraspView, held: &InHand, run: Option<&GraspRun>) -> Guidance {
+    if grasp.hand_waits == Some(HandWaits::Offers) {
+        return held_out();
+    }
+    let other = grasp.not_made.as_ref().and_then(|not_made| instead(not_made, HandWaits::Carries));
+    if let Some(other) = other {
+        return other;
+    }
     let there = format!("The {} is in the {} hand.", held.object.to_lowercase(), held.hand.name());
     let asked = run.is_some_and(|run| run.outcome == Some(GraspOutcome::Success) && run.told.is_none());
     let then = match asked {

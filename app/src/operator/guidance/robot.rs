@@ -87,6 +87,22 @@ pub(super) fn limp(robot: &RobotView) -> Option<Guidance> {
     })
 }
 
+/// Some joints are limp and others hold: they give way, and no move begins with them.
+fn limp_in_part(robot: &RobotView) -> Option<Guidance> {
+    let limp: Vec<&str> = (robot.joints.iter())
+        .filter(|joint| joint.torque_on == Some(false))
+        .map(|joint| joint.title.as_str())
+        .collect();
+    let said = match limp.as_slice() {
+        [] => return None,
+        [one] => format!("{one} is limp: it gives way, and sinks."),
+        several => format!("{} are limp: they give way, and sink.", format::count(several.len(), "joint")),
+    };
+    let holds = if robot.stopped { " Release STOP first." } else { " Held, they stay where they are." };
+    let guidance = say(format!("{said}{holds}")).warn();
+    Some(guidance.then("Hold all joints", Action::Robot(RobotAction::TorqueOn)))
+}
+
 /// Which joints turn when they are taken hold of: no servo holds beyond its limits.
 fn beyond(robot: &RobotView) -> Option<String> {
     let off = |joint: &JointView| joint.angle_rad.map(|angle_rad| joint.limits.excess_rad(angle_rad));
@@ -127,7 +143,7 @@ pub(super) fn robot(view: &View) -> Guidance {
     if let Some(guidance) = joint_trouble(robot) {
         return guidance;
     }
-    if let Some(guidance) = limp(robot) {
+    if let Some(guidance) = limp(robot).or_else(|| limp_in_part(robot)) {
         return guidance;
     }
     match &robot.motion {

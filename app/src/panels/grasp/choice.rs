@@ -7,6 +7,7 @@ use plumbline_model::listed;
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, space};
 
+use super::things::seen_but_not_held;
 use crate::operator::words::grasp::{about_hand, hand_choice, method};
 use crate::panels::PanelContext;
 
@@ -46,6 +47,10 @@ fn objects(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         if let Some([x_m, y_m]) = target.near_m {
             ui.add_space(space::S);
             ui.label(theme::small(ui, format!("near x {}, y {}", format::mm(x_m), format::mm(y_m))));
+        }
+        if let Some(others) = seen_but_not_held(cx.view) {
+            ui.add_space(space::S);
+            ui.label(theme::small(ui, others));
         }
     });
 }

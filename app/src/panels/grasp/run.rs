@@ -61,16 +61,17 @@ fn buttons(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             }
             phase if phase.is_paused() => {
                 let label = go_on(&cx.view.grasp);
-                action_button(ui, cx, GraspAction::Resume, &label);
                 action_button(ui, cx, GraspAction::End, "End");
+                action_button(ui, cx, GraspAction::Resume, &label);
             }
             GraspPhase::Grasping { .. } | GraspPhase::Hand { .. } => {
-                action_button(ui, cx, GraspAction::Pause, "Pause");
+                // End stays where it is, whatever its neighbor says.
                 action_button(ui, cx, GraspAction::End, "End");
+                action_button(ui, cx, GraspAction::Pause, "Pause");
             }
         }
-        stop_after_each(ui, cx);
     });
+    stop_after_each(ui, cx);
     match &cx.view.grasp.phase {
         GraspPhase::Idle | GraspPhase::Planning => {}
         phase if phase.is_paused() => {

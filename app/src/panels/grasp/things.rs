@@ -97,12 +97,7 @@ pub fn nothing_to_hold(view: &View) -> Option<String> {
     if let Some(away) = made_room(view) {
         return Some(away);
     }
-    let mut seen: Vec<&str> = found(view).iter().map(|object| object.name.as_str()).collect();
-    seen.retain(|name| !name.ends_with("Hand"));
-    seen.sort_unstable();
-    seen.dedup();
-    let (without_place, not_held): (Vec<&str>, Vec<&str>) =
-        seen.into_iter().partition(|name| can_be_held(view, name));
+    let (without_place, not_held) = seen(view);
     let listed = |names: &[&str]| plumbline_model::listed(names).to_lowercase();
     Some(match (without_place.is_empty(), not_held.is_empty()) {
         (false, _) => format!("Seen, but not where on the table: {}.", listed(&without_place)),
@@ -113,6 +108,22 @@ pub fn nothing_to_hold(view: &View) -> Option<String> {
         ),
         (true, true) => "Nothing to grasp is seen.".to_owned(),
     })
+}
+
+/// Names of what the eyes see now, hands apart: what can be held, and what cannot.
+fn seen(view: &View) -> (Vec<&str>, Vec<&str>) {
+    let mut seen: Vec<&str> = found(view).iter().map(|object| object.name.as_str()).collect();
+    seen.retain(|name| !name.ends_with("Hand"));
+    seen.sort_unstable();
+    seen.dedup();
+    seen.into_iter().partition(|name| can_be_held(view, name))
+}
+
+/// What is seen beside things that can be held, and is none of them.
+pub fn seen_but_not_held(view: &View) -> Option<String> {
+    let (_, not_held) = seen(view);
+    (!not_held.is_empty() && !things(view).is_empty())
+        .then(|| format!("Not held by these hands: {}.", plumbline_model::listed(&not_held).to_lowercase()))
 }
 
 fn place_m(object: &ObjectView) -> Option<Point3<f64>> {

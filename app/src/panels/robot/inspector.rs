@@ -3,6 +3,7 @@
 use egui::{Button, Ui};
 use plumbline_engine::view::{JointView, RobotView};
 use plumbline_engine::{RobotCommand, View};
+use plumbline_model::robot::JointIndex;
 use plumbline_widgets::buttons::choice;
 use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::key_value::{KeyValue, big_figure, key_value_grid};
@@ -21,7 +22,7 @@ pub fn show(ui: &mut Ui, view: &View, panels: &mut RobotPanels, outbox: &mut Out
     let robot = &view.robot;
     let chosen = panels.chosen_joint.and_then(|index| robot.joints.iter().find(|joint| joint.joint == index));
     match chosen {
-        Some(joint) => chosen_joint(ui, robot, joint, outbox),
+        Some(joint) => chosen_joint(ui, robot, joint, &mut panels.letting_go, outbox),
         None if robot.joints.is_empty() => {}
         None => {
             group_heading(ui, "Joint");
@@ -97,7 +98,13 @@ fn shown_move(ui: &mut Ui, view: &View, outbox: &mut Outbox) {
     }
 }
 
-fn chosen_joint(ui: &mut Ui, robot: &RobotView, joint: &JointView, outbox: &mut Outbox) {
+fn chosen_joint(
+    ui: &mut Ui,
+    robot: &RobotView,
+    joint: &JointView,
+    letting_go: &mut Option<JointIndex>,
+    outbox: &mut Outbox,
+) {
     group_heading(ui, &joint.title);
     let angle = joint.angle_rad.map_or_else(|| format::NONE.to_owned(), |a| Quantity::Angle.text(a));
     big_figure(ui, "by the encoder", &angle, Role::Ink);
@@ -108,7 +115,7 @@ fn chosen_joint(ui: &mut Ui, robot: &RobotView, joint: &JointView, outbox: &mut 
     }
     ui.add_space(space::S);
     let limp = joint.torque_on == Some(false);
-    let text = if limp { "Hold this joint" } else { "Let this joint go limp" };
+    let text = if limp { "Hold this joint" } else { "Let this joint go limp…" };
     let why = if !robot.connection.is_connected() {
         Some("No robot is connected")
     } else if joint.torque_on.is_none() {
@@ -118,9 +125,30 @@ fn chosen_joint(ui: &mut Ui, robot: &RobotView, joint: &JointView, outbox: &mut 
     };
     let hover = if limp { "It holds where it is" } else { "It sinks by its own weight: hold it by hand" };
     let button = ui.add_enabled(why.is_none(), Button::new(text)).on_hover_text(hover);
-    if button.on_disabled_hover_text(why.unwrap_or_default()).clicked() {
-        outbox.send(RobotCommand::Torque { joints: vec![joint.joint], on: limp });
+    let asked = button.on_disabled_hover_text(why.unwrap_or_default()).clicked();
+    if asked && limp {
+        outbox.send(RobotCommand::Torque { joints: vec![joint.joint], on: true });
+    } else if asked {
+        *letting_go = Some(joint.joint);
     }
+    letting_go.take_if(|asked| *asked != joint.joint || limp || why.is_some());
+    if letting_go.is_some() {
+        go_limp(ui, joint, letting_go, outbox);
+    }
+}
+
+/// Asks first, below the button: who presses that twice has let nothing go.
+fn go_limp(ui: &mut Ui, joint: &JointView, letting_go: &mut Option<JointIndex>, outbox: &mut Outbox) {
+    warning(ui, "It sinks by its own weight, with all that hangs on it: hold it by hand.");
+    ui.horizontal_wrapped(|ui| {
+        if ui.button("Let it go limp").clicked() {
+            outbox.send(RobotCommand::Torque { joints: vec![joint.joint], on: false });
+            *letting_go = None;
+        }
+        if ui.button("Cancel").clicked() {
+            *letting_go = None;
+        }
+    });
 }
 
 fn joint_rows(joint: &JointView) -> Vec<KeyValue> {

@@ -33,6 +33,7 @@ fn contents(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let shown = JogPad::new(&tip)
         .why_not(why.as_deref())
         .enabled_elsewhere(pad.is_some())
+        .refused(cx.state.robot.asked == Asked::Jog && view.robot.refusal.is_some())
         .show(ui, &mut cx.state.robot.jog_speed);
     // Below, where the pad does not move under the finger that holds it, and is in sight in a small window.
     refusal_line(ui, cx, Asked::Jog);

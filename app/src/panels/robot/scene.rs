@@ -24,9 +24,8 @@ const NAMES_FROM: f32 = 520.0;
 const ABOVE_M: f64 = 0.08;
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
-    let planned = crate::panels::grasp_ghost(cx);
-    let ghost = crate::panels::touch_ghost(cx).or(planned.as_ref());
-    let mut drawn = scene(cx.view, &cx.state.robot, ghost, ui.available_width() >= NAMES_FROM);
+    let ghost = crate::panels::touch_ghost(cx).or_else(|| crate::panels::grasp_ghost(cx));
+    let mut drawn = scene(cx.view, &cx.state.robot, ghost.as_ref(), ui.available_width() >= NAMES_FROM);
     let palm_way = crate::panels::palm_way(cx);
     if palm_way.len() > 1 {
         drawn.lines.push(Line::new(palm_way, Tint::Ghost).width(2.0));

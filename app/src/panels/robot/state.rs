@@ -24,6 +24,8 @@ pub struct RobotPanels {
     pub(crate) asked: Asked,
     /// The pose that is asked about before it is deleted.
     pub(crate) deleting: Option<String>,
+    /// The joint that is asked about before it goes limp.
+    pub(crate) letting_go: Option<JointIndex>,
 }
 
 /// A place where requests are made.

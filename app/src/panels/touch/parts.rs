@@ -7,16 +7,19 @@ use crate::operator::Screen;
 use crate::operator::guidance::waiting_touch;
 use crate::panels::PanelContext;
 
-/// The posture at the contact of the chosen touch, or of the next one, to be drawn as a ghost;
-/// `None` while the arm moves by itself.
-pub fn ghost<'a>(cx: &'a PanelContext<'_>) -> Option<&'a Posture> {
+/// The posture at the contact of the chosen touch, or of the next one, to be drawn as a ghost, the head as it is: no
+/// touch turns it. `None` while the arm moves by itself.
+pub fn ghost(cx: &PanelContext<'_>) -> Option<Posture> {
     let touch = &cx.view.touch;
     let moves = matches!(touch.phase, TouchPhase::Running { .. } | TouchPhase::Planning);
     if cx.screen != Screen::Touch || moves {
         return None;
     }
     let number = cx.state.touch.chosen.or_else(|| next_touch(touch))?;
-    touch.plan.as_ref()?.postures.get(number.checked_sub(1)?)?.as_ref()
+    let planned = touch.plan.as_ref()?.postures.get(number.checked_sub(1)?)?.as_ref()?;
+    let (rig, measured) = (cx.view.robot.rig.as_ref()?, cx.view.robot.measured.as_ref()?);
+    let head = [rig.eyes.pan, rig.eyes.tilt];
+    (measured.len() == planned.len()).then(|| planned.with(&head, &measured.of(&head)))
 }
 
 /// The touch that is under way, else the next one, by number.

@@ -25,7 +25,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         let corners = Action::Touch(TouchAction::Plan(Preset::Corners));
         let possible = corners.refusal(view).is_none();
         let message = Message::new(
-            "The nominal place is in use",
+            "The described place is in use",
             "As it is described; a real screen lies some millimeters beside it. Touch its corners to measure it.",
         );
         let message = if possible { message.button("Plan to touch the corners") } else { message };

@@ -6,6 +6,7 @@ use plumbline_gap::finding::NextExperiment;
 
 use super::view::{AddedEffect, ShownFinding};
 use super::workflow::GapWorkflow;
+use crate::ground::text::sentence;
 
 impl GapWorkflow {
     /// The finding that is shown, with what was made of it, and whether something of it could be added and was
@@ -39,14 +40,39 @@ impl GapWorkflow {
         names
     }
 
-    /// The same for who reads them one by one: of each small one, how far it moves things.
+    /// The same for who reads them one by one: see [`told_by_kind`].
     pub fn effects_told(&self) -> Vec<String> {
-        let named = self.seen.model.effects.iter().filter(|effect| effect.is_named);
-        named.map(AddedEffect::told).collect()
+        told_by_kind(&self.seen.model.effects)
     }
 }
 
+/// The named effects in force: of each small one, how far it moves things; what has one name for every joint stands once,
+/// as where it was added: "Servo droop (6 joint by joint)".
+fn told_by_kind(effects: &[AddedEffect]) -> Vec<String> {
+    let named: Vec<&AddedEffect> = effects.iter().filter(|effect| effect.counts()).collect();
+    let first_of_its_kind = |i: &usize| named[..*i].iter().all(|before| before.kind() != named[*i].kind());
+    let of_kind = |i: usize| {
+        let alike = named.iter().filter(|effect| effect.kind() == named[i].kind()).count();
+        let what = named[i].title.rsplit(": ").next().unwrap_or_default();
+        match alike {
+            1 => named[i].told(),
+            several => format!("{} ({several} joint by joint)", sentence(what).trim_end_matches('.')),
+        }
+    };
+    (0..named.len()).filter(first_of_its_kind).map(of_kind).collect()
+}
+
 impl AddedEffect {
+    /// Whether it counts as an effect of the model in use: it was named, and is in force.
+    pub fn counts(&self) -> bool {
+        self.is_named && !self.is_left_out
+    }
+
+    /// What it is, wherever it is: what has the same kind has one name.
+    pub fn kind(&self) -> &str {
+        self.name.split('@').next().unwrap_or_default()
+    }
+
     /// Its title, and how far it moves things where that is little: "Fingertip: pad gives way (small: 0.12 mm at the
     /// fingertip)".
     pub fn told(&self) -> String {
@@ -63,6 +89,27 @@ impl AddedEffect {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_has_one_name_for_every_joint_stands_once() {
+        let effect = |name: &str, title: &str| AddedEffect {
+            name: name.to_owned(),
+            is_named: true,
+            title: title.to_owned(),
+            parameters: vec![],
+            is_of_eyes: false,
+            is_left_out: false,
+            moved_m: None,
+        };
+        let mut effects = vec![
+            effect("joint-zero@r_elbow_y", "Right elbow: zero off"),
+            effect("screen-bow@screen", "Screen: glass bows"),
+            effect("joint-zero@r_wrist_z", "Right wrist turn: zero off"),
+        ];
+        assert_eq!(told_by_kind(&effects), ["Zero off (2 joint by joint)", "Screen: glass bows"]);
+        effects[2].is_left_out = true;
+        assert_eq!(told_by_kind(&effects), ["Right elbow: zero off", "Screen: glass bows"]);
+    }
 
     #[test]
     fn a_small_effect_says_how_little_it_moves() {

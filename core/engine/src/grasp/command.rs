@@ -71,7 +71,7 @@ pub enum HandStep {
     Lift,
     /// Straight down to where things stand, opens, and up again.
     Place,
-    /// Hands over: to in front of the robot, waits, and opens.
+    /// Brings what it holds to in front of the robot, where somebody takes it before the hand is opened.
     Give,
     /// To the pose in which nothing is in the way, the hand as it is.
     Home,
@@ -89,7 +89,7 @@ impl HandStep {
             Self::Lift => "Lift",
             Self::Place => "Put down",
             Self::Give => "Hand over",
-            Self::Home => "Home",
+            Self::Home => "Arm home",
         }
     }
 }

@@ -54,6 +54,7 @@ pub fn may_hold(waits: HandWaits) -> Option<Gate> {
     let text = match waits {
         HandWaits::Around => "Its fingers may be around something: open the hand first.",
         HandWaits::Carries => "Its fingers may carry something: put it down, or open the hand, first.",
+        HandWaits::Offers => "It holds something out: take it and open the hand first.",
         HandWaits::Low | HandWaits::InView => return None,
     };
     Some(closed(Need::Hand, text))
@@ -136,11 +137,8 @@ fn joints(around: &GraspAround, arm: &str) -> Gate {
         }
         if joint.has_to_be_held() {
             return Some(match limp {
-                1 => format!("{title} does not hold: choose Hold all joints in Robot."),
-                n => format!(
-                    "{} of the arm do not hold: choose Hold all joints in Robot.",
-                    counted(n, "joint")
-                ),
+                1 => format!("{title} does not hold: press Hold all joints."),
+                n => format!("{} of the arm do not hold: press Hold all joints.", counted(n, "joint")),
             });
         }
         let temperature_c = joint.temperature_c?;

@@ -38,7 +38,7 @@ pub(super) fn rest(around: &GraspAround, arm: &str) -> Gate {
         Some((joint, off_rad)) => closed(
             Need::Rest,
             format!(
-                "{} is {:.0}° from where it was sent: free the arm by hand, or press Home.",
+                "{} is {:.0}° from where it was sent: free the arm by hand, or press Arm home.",
                 joint.title,
                 off_rad.to_degrees()
             ),

@@ -33,6 +33,7 @@ impl GraspWorkflow {
             stops_after_each: self.stops.is_on(),
             held: self.in_hand(),
             hand_waits: self.waits(around),
+            not_made: self.not_made.clone(),
             hand_moved: self.hand_moved,
             gates: self.gates(around, self.choice).into(),
             phase,
@@ -50,14 +51,13 @@ impl GraspWorkflow {
     /// How a hand was left, unless it was moved since, or holds something that is known.
     pub fn waits(&self, around: &GraspAround) -> Option<HandWaits> {
         let (rig, robot) = (&around.described, &around.robot);
+        let now = self.waits.as_ref().map(|waits| waits.now(rig, robot));
         if self.held.is_some() {
-            return None;
+            return now.flatten().filter(|waits| *waits == HandWaits::Offers);
         }
-        match &self.waits {
-            Some(waits) => waits.now(rig, robot),
-            // Wherever it was brought, or sank to.
-            None => stands_in_view(rig, self.hand(), robot).then_some(HandWaits::InView),
-        }
+        // Either hand, wherever it was brought or sank to.
+        let is_in_view = || Hand::BOTH.into_iter().any(|hand| stands_in_view(rig, hand, robot));
+        now.flatten().or_else(|| is_in_view().then_some(HandWaits::InView))
     }
 
     /// What is looked at before anything moves; what is in a hand is among it.

@@ -20,8 +20,8 @@ const CLEAR_M: f64 = 0.15;
 const GIVE_M: [f64; 3] = [0.34, 0.16, 0.26];
 /// Headings in which they are, rad, of a right hand; the first that the arm reaches.
 const GIVE_HEADINGS_RAD: [f64; 5] = [0.0, 0.5, 1.0, -0.5, 1.5];
-/// Somebody has this long to take it, s.
-const GIVE_WAIT_S: f64 = 3.0;
+/// Fingers that stand on the table are free so much higher, m.
+const FREES_M: f64 = 0.012;
 /// What is put down is let go this much above where it was taken, m.
 const ABOVE_SUPPORT_M: f64 = 0.002;
 
@@ -106,7 +106,10 @@ impl Hand<'_> {
     /// Fingers go where they are open, or it is said that something keeps them from it.
     fn unfold(&mut self, open: &Posture) -> Result<(), NoStep> {
         self.body.follow(std::slice::from_ref(open), OPEN_RAD_S).map_err(|halt| match halt {
-            Halt::Refused(why) => NoStep::Blocked(why),
+            // What other pose to choose is no advice here.
+            Halt::Refused(why) => {
+                NoStep::Blocked(why.split(". ").next().unwrap_or_default().trim_end_matches('.').to_owned())
+            }
             other => other.into(),
         })
     }
@@ -142,8 +145,17 @@ impl Hand<'_> {
         }
         self.context.report(0.5, "letting go");
         self.body.let_fingers_touch()?;
-        let open = self.planner.open(&low);
-        self.unfold(&open)?;
+        let mut open = self.planner.open(&low);
+        match self.unfold(&open) {
+            // A finger stands on the table: a little higher it is free.
+            Err(NoStep::Blocked(_)) => {
+                let higher = self.raised(FREES_M)?;
+                open = self.planner.open(&higher);
+                self.body.let_fingers_touch()?;
+                self.unfold(&open)?;
+            }
+            done => done?,
+        }
         self.body.wait(0.3)?;
         self.body.let_fingers_touch()?;
         let heading_rad = self.planner.arm().heading_rad(&open);
@@ -151,6 +163,16 @@ impl Hand<'_> {
         Ok(self.body.follow(&up, SPEED_RAD_S)?)
     }
 
+    /// Straight up by this, fingers as they are.
+    fn raised(&mut self, by_m: f64) -> Result<Posture, NoStep> {
+        let from = self.body.commanded()?;
+        let up = self.planner.vertical(self.planner.arm().heading_rad(&from), &from, by_m);
+        self.body.let_fingers_touch()?;
+        self.body.follow(&up, SPEED_RAD_S)?;
+        Ok(up.last().cloned().unwrap_or(from))
+    }
+
+    /// It holds on until somebody has it: the hand opens by a step of its own.
     fn give(&mut self, left: bool) -> Result<(), NoStep> {
         self.clear_the_table()?;
         let from = self.body.commanded()?;
@@ -160,11 +182,7 @@ impl Hand<'_> {
         let arm = self.planner.arm();
         let mut headings = GIVE_HEADINGS_RAD.iter().map(|heading_rad| -side * heading_rad);
         let there = headings.find_map(|heading_rad| arm.sent_to(point, heading_rad, &from));
-        self.body.follow(&[there.ok_or(NoStep::OutOfReach)?], SPEED_RAD_S)?;
-        self.context.report(0.6, "waits for a hand that takes it");
-        self.body.wait(GIVE_WAIT_S)?;
-        self.context.report(0.8, "letting go");
-        self.open()
+        Ok(self.body.follow(&[there.ok_or(NoStep::OutOfReach)?], SPEED_RAD_S)?)
     }
 
     fn home(&mut self) -> Result<(), NoStep> {

@@ -37,6 +37,8 @@ pub struct GraspView {
     pub held: Option<InHand>,
     /// How the hand was left, where that matters to what is done next; `None`: it does not, or it was moved since.
     pub hand_waits: Option<HandWaits>,
+    /// The step of a hand that was asked for last, where it could not be made, and why.
+    pub not_made: Option<StepNotMade>,
     /// Whether the hand was moved by itself since the last attempt: why that failed says nothing of now.
     pub hand_moved: bool,
     /// What is looked at before anything moves.
@@ -69,6 +71,22 @@ impl GraspView {
     }
 }
 
+/// A step of a hand that could not be made.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StepNotMade {
+    /// Which.
+    pub step: HandStep,
+    /// Why: the end of a sentence.
+    pub why: String,
+}
+
+impl HandWaits {
+    /// Whether its fingers may be around something.
+    pub fn may_hold(self) -> bool {
+        matches!(self, Self::Around | Self::Carries | Self::Offers)
+    }
+}
+
 /// How a hand was left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HandWaits {
@@ -76,6 +94,8 @@ pub enum HandWaits {
     Around,
     /// The same in the air: what it may carry is put down first.
     Carries,
+    /// What it may carry is held out to be taken: it is opened once somebody has it.
+    Offers,
     /// It is open, around something or low between things: it is lifted first.
     Low,
     /// It stands over the table, where it hides what is grasped next, and cannot be told from the picture before.

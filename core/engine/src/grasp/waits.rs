@@ -44,6 +44,16 @@ impl Waits {
         Some(Self { of: attempt.hand, hand, at: robot.measured.clone() })
     }
 
+    /// When the program begins, after its last attempt: what was held then may be in the hand still, as long as its fingers
+    /// are not open.
+    pub fn after_restart(last: &AttemptView) -> Option<Self> {
+        let may_hold = match &last.outcome {
+            Some(outcome) => *outcome == GraspOutcome::Success,
+            None => matches!(last.reached, Some(Step::Close | Step::Lift | Step::Check)),
+        };
+        may_hold.then_some(Self { of: last.hand, hand: HandWaits::Carries, at: None })
+    }
+
     /// After a step of a hand; `before`: how it was left then.
     pub fn after_step(
         (step, done): (HandStep, &Result<(), NoStep>),
@@ -52,16 +62,15 @@ impl Waits {
         robot: &RobotView,
     ) -> Option<Self> {
         let was = before.map(|before| before.hand);
-        let lets_go = matches!(step, HandStep::Open | HandStep::Place | HandStep::Give | HandStep::Close);
+        let lets_go = matches!(step, HandStep::Open | HandStep::Place | HandStep::Close);
         let hand = match (step, done) {
             (_, Err(why)) if lets_go && had_begun(why) => HandWaits::Around,
             (_, Err(_)) => was?,
             // It goes home as it is: what it is around comes along.
-            (HandStep::Home | HandStep::Lift, Ok(()))
-                if matches!(was, Some(HandWaits::Around | HandWaits::Carries)) =>
-            {
+            (HandStep::Home | HandStep::Lift, Ok(())) if was.is_some_and(HandWaits::may_hold) => {
                 HandWaits::Carries
             }
+            (HandStep::Give, Ok(())) => HandWaits::Offers,
             (_, Ok(())) if !is_away(rig, of, robot) => return None,
             (HandStep::Close, Ok(())) => HandWaits::Around,
             // Opened around what it was around.
@@ -77,14 +86,15 @@ impl Waits {
         let Some((arm, measured)) = rig.arm(self.of.name()).zip(robot.measured.as_ref()) else {
             return Some(self.hand);
         };
-        let closes = matches!(self.hand, HandWaits::Around | HandWaits::Carries);
-        if closes && arm.hand.iter().any(|joint| measured[*joint].abs() > BENT_RAD) {
-            return Some(self.hand);
-        }
         let off_rad = |was: &Posture| {
             arm.joints.iter().map(|joint| (was[*joint] - measured[*joint]).abs()).fold(0.0, f64::max)
         };
         let stands = self.at.as_ref().is_some_and(|was| off_rad(was) < MOVED_RAD);
+        if self.hand.may_hold() && arm.hand.iter().any(|joint| measured[*joint].abs() > BENT_RAD) {
+            // Held out where it was brought, nowhere else.
+            let was_moved = self.hand == HandWaits::Offers && !stands;
+            return Some(if was_moved { HandWaits::Carries } else { self.hand });
+        }
         match self.hand {
             HandWaits::Around | HandWaits::Low if stands => Some(HandWaits::Low),
             _ => is_away(rig, self.of, robot).then_some(HandWaits::InView),
@@ -183,6 +193,31 @@ mod tests {
         assert_eq!(now(opened.as_ref(), &at(0.0, 0.0)), None);
         let down = after(HandStep::Place, Ok(()), lifted.as_ref(), &open);
         assert_eq!(now(down.as_ref(), &open), Some(HandWaits::InView));
+    }
+
+    #[test]
+    fn what_was_held_when_the_program_ended_may_be_held_until_the_hand_is_open() {
+        let held =
+            AttemptView { outcome: Some(GraspOutcome::Success), ..attempt(Step::Check, Failure::Halted) };
+        let waits = Waits::after_restart(&held);
+        assert_eq!(now(waits.as_ref(), &at(0.0, 0.8)), Some(HandWaits::Carries));
+        assert_eq!(now(waits.as_ref(), &at(0.0, 0.0)), None, "it was opened meanwhile");
+        let broken_off = |reached| AttemptView { outcome: None, ..attempt(reached, Failure::Halted) };
+        assert!(Waits::after_restart(&broken_off(Step::Lift)).is_some());
+        assert!(Waits::after_restart(&broken_off(Step::Lower)).is_none(), "the hand was open");
+        assert!(Waits::after_restart(&attempt(Step::Check, Failure::Slipped)).is_none());
+    }
+
+    #[test]
+    fn what_is_held_out_is_so_until_the_hand_is_open_or_goes_elsewhere() {
+        let (there, open, elsewhere) = (at(0.6, 0.8), at(0.6, 0.0), at(1.2, 0.8));
+        let given = after(HandStep::Give, Ok(()), None, &there);
+        assert_eq!(now(given.as_ref(), &there), Some(HandWaits::Offers));
+        assert_eq!(now(given.as_ref(), &elsewhere), Some(HandWaits::Carries));
+        let opened = after(HandStep::Open, Ok(()), given.as_ref(), &open);
+        assert_eq!(now(opened.as_ref(), &open), Some(HandWaits::InView));
+        let home = after(HandStep::Home, Ok(()), given.as_ref(), &at(0.0, 0.8));
+        assert_eq!(now(home.as_ref(), &at(0.0, 0.8)), Some(HandWaits::Carries), "it comes along");
     }
 
     #[test]

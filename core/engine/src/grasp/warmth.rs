@@ -11,7 +11,7 @@ pub(super) fn warmth(on_min: Option<f64>, calibrated_min: Option<f64>) -> Option
     match Warmth::of(on_min, calibrated_min) {
         Warmth::Colder { wait_min } => doubt(format!(
             "The eyes have been on for {on_min:.0} min and were calibrated after {calibrated_min:.0} min: places are \
-             off until they are as warm. Wait {wait_min:.0} min."
+             off until they are nearly as warm. Wait {wait_min:.0} min."
         )),
         Warmth::Warmer => doubt(format!(
             "The eyes have been on for {on_min:.0} min and were calibrated after {calibrated_min:.0} min, colder than \

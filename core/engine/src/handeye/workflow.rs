@@ -179,6 +179,11 @@ impl HandEyeWorkflow {
         Some(running)
     }
 
+    /// Why hand and eyes go together worse than they did: what was learned of them is not in this model any more.
+    pub fn lost(&self, added: Option<&Arc<RigModel>>) -> Option<&'static str> {
+        (self.kept.is_some() && self.in_use(added).is_none()).then_some(STALE)
+    }
+
     fn step(&self, around: &HandEyeAround) -> StepState {
         if self.running.is_some() {
             return StepState::Running;
@@ -201,7 +206,7 @@ pub fn is_of_other_eyes(added: Option<&Arc<RigModel>>, rig: &Rig) -> bool {
 /// What is not in force.
 const OTHER_EYES: &str = "The hands were looked at with another calibration or mount of the eyes than the one in use. Bring that back on the timeline, or look again.";
 /// What the model in use lost.
-const STALE: &str = "What the eyes learned of the hands is not in the model in use any more: it was taken back, or the arm was learned anew. Look again.";
+const STALE: &str = "What the eyes learned of the hands is not in the model in use any more: it was taken back, or the arm was learned anew. Put it back, or look again.";
 
 /// The twin's table is cleared, as a person clears the robot's: what stood there, and where, m.
 fn clear(around: &HandEyeAround, context: &mut Context<'_>) -> Vec<(String, [f64; 2])> {

@@ -1,8 +1,9 @@
 //! From how fast a tip should go to how fast the joints must turn.
 //!
-//! Least squares over the tip's velocity and its turn about the vertical, damped in those directions alone in which the
-//! arm is nearly stretched: there the tip goes slower than asked instead of the joints going wild, and everywhere else
-//! where it is asked to. (Damped everywhere, it went astray by a third of its way.)
+//! The smallest joint speeds that take the tip just where it is asked to, all of them slower where one would be too
+//! fast. The hand keeps its turn about the vertical as long as the arm can do both. Where the arm is nearly stretched
+//! joints would go wild for little: it reaches no farther that way. A way that leads out of there is gone damped, slower
+//! than asked and a little beside it. (Damped also on the way in, the tip went aside and down by a fifth of its way.)
 //! Sources: Nakamura and Hanafusa: Inverse kinematic solutions with singularity robustness (1986); numerical filtering:
 //! Maciejewski and Klein (1988).
 
@@ -15,21 +16,66 @@ use super::command::JogRates;
 
 /// Below this singular value (m/rad) directions are damped.
 const DAMPING: f64 = 0.02;
+/// The tip goes at least so far for a radian of the joints, m/rad: nearer to where the arm is stretched it is not jogged.
+const LEAST_GAIN_M_RAD: f64 = 0.04;
+/// It goes where it is asked to, to this share of the way.
+const ASTRAY: f64 = 0.02;
+/// So far ahead it is looked whether a way leads out of where the arm is stretched, rad.
+const OUT_RAD: f64 = 0.01;
 /// A turn of 1 rad/s counts as much as this many m/s.
 const LEVER_M: f64 = 0.1;
 /// Half of a difference of a joint's angle, rad.
 const STEP_RAD: f64 = 1e-5;
 
 /// Joint speeds (rad/s, one per joint of the arm) at which the real tip goes as asked when a posture is
-/// commanded, all slowed down together so that none is faster than `fastest_rad_s`.
-pub fn joint_rates(arm: &ModelArm, commanded: &Posture, rates: &JogRates, fastest_rad_s: f64) -> Vec<f64> {
+/// commanded, all slowed down together so that none is faster than `fastest_rad_s`. `None`: the arm reaches no farther
+/// that way.
+pub fn joint_rates(
+    arm: &ModelArm,
+    commanded: &Posture,
+    rates: &JogRates,
+    fastest_rad_s: f64,
+) -> Option<Vec<f64>> {
     let rows = slopes(arm, commanded);
     let [x, y, z] = rates.velocity_m_s;
-    let wanted = DVector::from_vec(vec![x, y, z, rates.yaw_rad_s * LEVER_M]);
-    let Some(speeds) = solved(rows, &wanted) else { return vec![0.0; arm.joints().len()] };
+    let all = DVector::from_vec(vec![x, y, z, rates.yaw_rad_s * LEVER_M]);
+    // A turn that is asked for is no less wanted than a way.
+    let counted = if rates.yaw_rad_s == 0.0 { 3 } else { 4 };
+    let (of_way, way) = (rows.rows(0, counted).into_owned(), all.rows(0, counted).into_owned());
+    let speeds = exact(&rows, &all)
+        .or_else(|| exact(&of_way, &way))
+        .or_else(|| led_out(arm, commanded, of_way, &way))?;
     let fastest = speeds.amax();
     let slow_down = if fastest > fastest_rad_s { fastest_rad_s / fastest } else { 1.0 };
-    speeds.iter().map(|speed| speed * slow_down).collect()
+    Some(speeds.iter().map(|speed| speed * slow_down).collect())
+}
+
+/// The smallest joint speeds that give just this velocity; `None`: there are none but wild ones.
+fn exact(rows: &DMatrix<f64>, wanted: &DVector<f64>) -> Option<DVector<f64>> {
+    let speeds = rows.clone().try_svd(true, true, f64::EPSILON, 200)?.solve(wanted, 1e-6).ok()?;
+    let astray = (rows * &speeds - wanted).norm();
+    // NaN fails both comparisons.
+    let is_so = speeds.norm() * LEAST_GAIN_M_RAD <= wanted.norm() && astray <= ASTRAY * wanted.norm();
+    is_so.then_some(speeds)
+}
+
+/// Damped speeds, where the arm is less stretched after them.
+fn led_out(
+    arm: &ModelArm,
+    commanded: &Posture,
+    rows: DMatrix<f64>,
+    wanted: &DVector<f64>,
+) -> Option<DVector<f64>> {
+    let counted = rows.nrows();
+    let least =
+        |rows: DMatrix<f64>| Some(rows.try_svd(false, false, f64::EPSILON, 200)?.singular_values.min());
+    let before = least(rows.clone())?;
+    let speeds = solved(rows, wanted)?;
+    let step = speeds.normalize() * OUT_RAD;
+    let angles: Vec<f64> = commanded.of(arm.joints()).iter().zip(&step).map(|(at, by)| at + by).collect();
+    let there = slopes(arm, &commanded.with(arm.joints(), &angles)).rows(0, counted).into_owned();
+    // NaN, where nothing turns, fails the comparison.
+    (least(there)? > before).then_some(speeds)
 }
 
 /// The smallest joint speeds that give a velocity; less of it in directions that the arm hardly has. `None`: the numbers
@@ -107,7 +153,7 @@ mod tests {
     fn the_tip_goes_where_it_is_asked_to() {
         let (rig, arm) = nominal();
         let rates = JogRates { velocity_m_s: [0.05, -0.02, 0.01], yaw_rad_s: 0.0 };
-        let speeds = joint_rates(&arm, &ready(&rig), &rates, 10.0);
+        let speeds = joint_rates(&arm, &ready(&rig), &rates, 10.0).expect("within reach");
         let asked = Vector3::from(rates.velocity_m_s);
         let went = went(&arm, &ready(&rig), &speeds);
         assert!((went - asked).norm() < 0.01 * asked.norm(), "{went:?}");
@@ -122,7 +168,7 @@ mod tests {
             let (mut posture, from) = (ready(&rig), tip(&ready(&rig)));
             for _ in 0..200 {
                 let rates = JogRates { velocity_m_s: asked, yaw_rad_s: 0.0 };
-                let speeds = joint_rates(&arm, &posture, &rates, 10.0);
+                let speeds = joint_rates(&arm, &posture, &rates, 10.0).expect("within reach");
                 let angles: Vec<f64> = posture
                     .of(arm.joints())
                     .iter()
@@ -146,7 +192,7 @@ mod tests {
         // What is asked of the arm without effects and of that with them is judged by the same measure.
         let asked = Vector3::from(rates.velocity_m_s);
         let [with, without] = [&real, &nominal].map(|by| {
-            let speeds = joint_rates(by, &ready(&rig), &rates, 10.0);
+            let speeds = joint_rates(by, &ready(&rig), &rates, 10.0).expect("within reach");
             (went(&real, &ready(&rig), &speeds) - asked).norm() / asked.norm()
         });
         assert!(with < 0.01 && without > 0.05, "astray by {with} with and {without} without");
@@ -169,16 +215,55 @@ mod tests {
         let (rig, arm) = nominal();
         let angles = [0.0, 1.2, 0.0, std::f64::consts::PI, 0.0, 0.0];
         let stretched = rig.home().with(arm.joints(), &angles);
-        let rates = JogRates { velocity_m_s: [1.0, 1.0, 1.0], yaw_rad_s: 3.0 };
-        for speed in joint_rates(&arm, &stretched, &rates, 0.5) {
-            assert!(speed.is_finite() && speed.abs() <= 0.5 + 1e-12, "{speed}");
+        for way in [[1.0, 1.0, 1.0], [-1.0, 0.0, 0.0], [0.0, 0.0, -1.0]] {
+            let rates = JogRates { velocity_m_s: way, yaw_rad_s: 3.0 };
+            for speed in joint_rates(&arm, &stretched, &rates, 0.5).unwrap_or_default() {
+                assert!(speed.is_finite() && speed.abs() <= 0.5 + 1e-12, "{speed}");
+            }
         }
+    }
+
+    /// The way of a held button from one posture: all places of the tip until the arm reaches no farther.
+    fn held(
+        arm: &ModelArm,
+        from: &Posture,
+        velocity_m_s: [f64; 3],
+    ) -> (Posture, Vec<nalgebra::Point3<f64>>, bool) {
+        let (mut posture, mut places) = (from.clone(), vec![]);
+        for _ in 0..2000 {
+            places.push(arm.tip(&posture, &Conditions::default()).coords);
+            let rates = JogRates { velocity_m_s, yaw_rad_s: 0.0 };
+            let Some(speeds) = joint_rates(arm, &posture, &rates, 0.5) else {
+                return (posture, places, true);
+            };
+            let angles = posture.of(arm.joints());
+            let angles: Vec<f64> = angles.iter().zip(&speeds).map(|(at, speed)| at + 0.01 * speed).collect();
+            posture = posture.with(arm.joints(), &angles);
+        }
+        (posture, places, false)
+    }
+
+    #[test]
+    fn an_arm_that_is_jogged_out_goes_straight_and_ends_and_comes_back() {
+        let (rig, arm) = nominal();
+        let (stretched, out, ended) = held(&arm, &ready(&rig), [0.06, 0.0, 0.0]);
+        assert!(ended, "it says that it reaches no farther");
+        let way = out[out.len() - 1] - out[0];
+        assert!(way.x > 0.05, "{way:?}");
+        for place in &out {
+            let aside = (place - out[0]).yz().norm();
+            assert!(aside < 2e-3, "{aside} m beside its line after {:?}", place - out[0]);
+        }
+        let (_, back, _) = held(&arm, &stretched, [-0.06, 0.0, 0.0]);
+        let way = back[back.len().min(200) - 1] - back[0];
+        assert!(way.x < -0.05, "it comes back: {way:?}");
     }
 
     #[test]
     fn no_wish_no_motion() {
         let (rig, arm) = nominal();
-        let speeds = joint_rates(&arm, &rig.home(), &JogRates::default(), 0.5);
+        let speeds =
+            joint_rates(&arm, &rig.home(), &JogRates::default(), 0.5).expect("nothing is out of reach");
         assert!(speeds.iter().all(|speed| *speed == 0.0));
     }
 }

@@ -12,6 +12,7 @@ mod path;
 pub(crate) mod patience;
 mod poses;
 mod publish;
+mod said;
 #[cfg(test)]
 mod tests;
 mod thread;

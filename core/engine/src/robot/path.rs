@@ -127,9 +127,16 @@ impl Paths {
                 Err(InTheWay::Collides { a, b: contact.b_name, at_fraction })
             }
             Found::BeyondLimit { name, by_rad, why, at_fraction, .. } => {
-                Err(InTheWay::BeyondLimit { joint: name, by_rad, why, at_fraction })
+                Err(InTheWay::BeyondLimit { joint: self.title(name), by_rad, why, at_fraction })
             }
         }
+    }
+
+    /// What a joint of this name is called for people.
+    fn title(&self, name: String) -> String {
+        let joint = self.rig.description.find_joint(&name).ok();
+        let servo = joint.and_then(|joint| self.rig.servo_of(joint));
+        servo.map_or(name, |servo| servo.title.clone())
     }
 
     /// The posture with joints that read a little beyond their limits put back to them.

@@ -59,6 +59,25 @@ pub enum Unable {
         FASTEST_JOG[1]
     )]
     TooFast,
+    /// A joint of it ends.
+    #[error("{joint} is at its end that way ({why}). Jog it back, or to a side.")]
+    JogEnds {
+        /// Which.
+        joint: String,
+        /// What limits it.
+        why: String,
+    },
+    /// It would meet something.
+    #[error("{a} would run into {b} that way. Jog it back, or to a side.")]
+    JogMeets {
+        /// What, as the beginning of a sentence.
+        a: String,
+        /// Into what.
+        b: String,
+    },
+    /// The arm is stretched, or as good as.
+    #[error("The arm reaches no farther that way. Jog it back, or to a side.")]
+    NoFarther,
     /// A touch is under way.
     #[error("The arm is busy ({0}). Pause the run of touches first.")]
     Busy(String),
@@ -272,6 +291,17 @@ pub(super) fn holds_unheard(reason: &HoldReason) -> bool {
         HoldReason::Refused(refusal) => is_unheard(refusal),
         HoldReason::Slow { .. } | HoldReason::NoAnswer { .. } => true,
         _ => false,
+    }
+}
+
+impl InTheWay {
+    /// The same of a jog, which goes nowhere in particular: no share of a way, and no other pose to choose.
+    pub fn of_jog(self) -> Unable {
+        match self {
+            Self::Collides { a, b, .. } => Unable::JogMeets { a, b },
+            Self::BeyondLimit { joint, why, .. } => Unable::JogEnds { joint, why },
+            Self::Unknown(_) => self.into(),
+        }
     }
 }
 

@@ -91,7 +91,7 @@ impl State {
             self.rooms.live.clear();
             self.rooms.detect.clear();
         }
-        self.shown = World::of(view.spec.as_ref());
+        self.shown = self.shown_by(view.spec.as_ref());
         // A recording was made by these eyes, whose head stood otherwise.
         let is_recorded = is_recording(view.spec.as_ref());
         let own_lenses = is_recorded || is_of_this_robot(view.spec.as_ref());
@@ -113,6 +113,14 @@ impl State {
         }
         self.use_models();
         self.rooms.live.use_nominal_lenses(own_lenses);
+    }
+
+    /// Whose eyes these are. Where none are open: those of the arm that is connected, whose calibration stays.
+    fn shown_by(&self, source: Option<&SourceSpec>) -> World {
+        match (source, &self.robot.connection) {
+            (None, Connection::Connected { twin, .. }) => World::of_robot(*twin),
+            (source, _) => World::of(source),
+        }
     }
 
     /// The source has a message for the operator.
@@ -145,6 +153,7 @@ impl State {
             Connection::Connected { twin, .. } => World::of_robot(*twin),
             _ => self.arm_of,
         };
+        self.shown = self.shown_by(self.rooms.source.view().spec.clone().as_ref());
         self.use_models();
         self.with::<MountWorkflow>(self.shown, |mount, around, context| mount.step(around, context));
         self.with::<TouchWorkflow>(self.arm_of, |touch, around, context| touch.step(around, context));

@@ -309,6 +309,7 @@ impl Neighbors<GraspWorkflow> for State {
         let usable = models.of(world).usable();
         let model = |method| usable.iter().find(|model| model.method() == method).cloned();
         let (detector, provider) = detect.chosen();
+        let lost = self.rooms.handeye.of(world).lost(self.rooms.gap.of(world).model()).map(str::to_owned);
         let looking = (self.rooms.handeye.of(world).is_looking())
             .then_some("The eyes look at the hands: wait for the end, or cancel it, first.");
         GraspAround {
@@ -317,7 +318,7 @@ impl Neighbors<GraspWorkflow> for State {
             robot: self.robot.clone(),
             calibration: eyes.of(world).in_use().cloned(),
             eyes_on_min: self.eyes_on_s(world).map(|on_s| on_s / 60.0),
-            in_doubt: self.in_doubt(world).next().map(|(_, why)| why),
+            in_doubt: self.in_doubt(world).next().map(|(_, why)| why).or(lost),
             has_mount: mount.of(world).in_use().is_some(),
             has_screen: touch.of(world).screen().is_some(),
             corrections: Corrections {

@@ -207,7 +207,7 @@ fn of_mount(in_use: Option<&MountCalibration>) -> Standing {
 
 fn of_screen(in_use: Option<&ScreenPlacement>) -> Standing {
     let Some(placement) = in_use else {
-        return nothing(Subject::Screen, "the place in the rig file");
+        return nothing(Subject::Screen, "the described place");
     };
     Standing {
         subject: Subject::Screen,

@@ -144,7 +144,7 @@ pub enum NotRestored {
     File(#[from] FileError),
 }
 
-const NOMINAL: &str = "Until then the nominal place is used.";
+const NOMINAL: &str = "Until then the described place is used.";
 
 /// Why a run cannot be begun, written or opened.
 #[derive(Debug, thiserror::Error)]

@@ -242,7 +242,7 @@ impl LongWork for TouchWork {
             Self::Accept { .. } => "Use this place of the screen".to_owned(),
             Self::UseEarlier { .. } => "Go back to an earlier place of the screen".to_owned(),
             Self::KeepChoice { .. } => "Keep what targets are corrected with".to_owned(),
-            Self::Forget { .. } => "Go back to the nominal place of the screen".to_owned(),
+            Self::Forget { .. } => "Go back to the described place of the screen".to_owned(),
         }
     }
 
@@ -410,7 +410,7 @@ impl TouchResult {
             Self::WayHome(_) => "The way from the screen was looked for.".to_owned(),
             Self::Placed(_) => "The place of the screen was measured.".to_owned(),
             Self::Saved(_) => "The measured place of the screen is in use.".to_owned(),
-            Self::Forgotten => "The nominal place of the screen is in use.".to_owned(),
+            Self::Forgotten => "The described place of the screen is in use.".to_owned(),
             Self::ChoiceKept => "What corrects targets is kept.".to_owned(),
         }
     }

@@ -36,7 +36,7 @@ impl TruthOf {
     pub fn name(self) -> &'static str {
         match self {
             Self::Toy => "Toys",
-            Self::Finger => "Finger",
+            Self::Finger => "Tip",
             Self::Mount => "Mount",
             Self::Zero => "Zeros",
             Self::Axis => "Axes",

@@ -11,6 +11,10 @@ const BESIDE_RAD: [f64; 9] = [0.0, 0.1, -0.1, 0.2, -0.2, 0.35, -0.35, 0.5, -0.5]
 const FARTHEST_RAD: f64 = 0.9;
 /// The same back over where a thing was taken.
 const FARTHEST_BACK_RAD: f64 = 1.4;
+/// An arm whose joints are no farther from home stands at home, from where each way over the table is a long one, rad.
+const AT_HOME_RAD: f64 = 0.3;
+/// Headings in which it is brought back from there, rad, of a right hand.
+const FROM_HOME_RAD: [f64; 7] = [0.0, 0.3, -0.3, 0.6, 1.0, -0.6, 1.5];
 /// The palm is at a height to within this, m.
 const THERE_M: f64 = 0.004;
 
@@ -30,13 +34,20 @@ impl GraspPlanner {
         let arm = self.arm();
         let now_m = arm.palm(from).coords;
         let is_over = (now_m.x - x_m).hypot(now_m.y - y_m) < STRAIGHT_M;
-        if is_over || now_m.z < z_m + OVER_M {
+        let home = arm.rig().home();
+        let is_at_home = arm.joints().iter().all(|joint| (from[*joint] - home[*joint]).abs() < AT_HOME_RAD);
+        if !is_at_home && (is_over || now_m.z < z_m + OVER_M) {
             return self.lowered(from, z_m);
         }
-        for beside_rad in BESIDE_RAD {
-            let heading_rad = arm.heading_rad(from) + beside_rad;
+        let side = if arm.is_left() { 1.0 } else { -1.0 };
+        let headings: Vec<f64> = match is_at_home {
+            true => FROM_HOME_RAD.iter().map(|heading_rad| -side * heading_rad).collect(),
+            false => BESIDE_RAD.iter().map(|beside_rad| arm.heading_rad(from) + beside_rad).collect(),
+        };
+        let farthest_rad = if is_at_home { f64::INFINITY } else { FARTHEST_BACK_RAD };
+        for heading_rad in headings {
             let over = arm.sent_to(Point::new(x_m, y_m, z_m + OVER_M), heading_rad, from);
-            let Some(over) = over.filter(|over| over.distance_rad(from) < FARTHEST_BACK_RAD) else {
+            let Some(over) = over.filter(|over| over.distance_rad(from) < farthest_rad) else {
                 continue;
             };
             let down = self.vertical(heading_rad, &over, -OVER_M);

@@ -12,6 +12,7 @@ use plumbline_model::robot::{JointIndex, Posture, Rig};
 
 use super::chains::Chains;
 use super::command::{MoveId, MoveOutcome, Setpoint};
+use super::droop::Droop;
 use super::exchange::Exchange;
 use super::grip::Gripping;
 use super::guard::{FloorGuard, Guard};
@@ -53,6 +54,8 @@ pub(super) struct Controller {
     pub(super) grips: Vec<Gripping>,
     /// Goals as commanded last; joints without a goal as measured.
     pub(super) commanded: Option<Posture>,
+    /// How far the joints hang below their goals.
+    droop: Droop,
     stop_seen: bool,
     pub(super) behind_since: Vec<Option<Instant>>,
     /// Since when a motion waits for readings that are fresh enough.
@@ -85,6 +88,7 @@ impl Controller {
             mode: Mode::Hold(HoldReason::Connected),
             grips: vec![],
             commanded: None,
+            droop: Droop::of(n),
             stop_seen: false,
             behind_since: vec![None; n],
             waits_since: None,
@@ -184,6 +188,7 @@ impl Controller {
         }
         self.rate.count_strays(Instant::now(), self.exchange.bus.counts().stray_bytes);
         self.begin_commanded();
+        self.note_droop(now);
         for request in requests {
             self.take(request)?;
         }
@@ -211,23 +216,37 @@ impl Controller {
         self.send()
     }
 
-    /// The goals of joints that move become where they are; whatever moved ends.
+    /// The goals of joints that move become what keeps them where they are; whatever moved ends.
     pub(super) fn hold(&mut self, reason: HoldReason) {
-        let moving = self.moving();
+        let (moving, goals_rad) = (self.moving(), self.goals_that_keep());
         if let Some(commanded) = &mut self.commanded {
-            for slot in self.exchange.slots.iter_mut().filter(|slot| slot.holds_torque()) {
+            let slots = self.exchange.slots.iter_mut().zip(goals_rad);
+            for (slot, goal_rad) in slots.filter(|(slot, _)| slot.holds_torque()) {
                 slot.insist = true;
                 let joint = slot.reading.joint;
                 if !moving.contains(&joint) && !is_turning(slot) {
                     continue;
                 }
-                match slot.reading.angle_rad.filter(|_| slot.silence() < FRESH) {
-                    Some(angle_rad) => commanded[joint] = angle_rad,
+                match goal_rad.filter(|_| slot.silence() < FRESH) {
+                    Some(goal_rad) => commanded[joint] = goal_rad,
                     None => slot.hold_pending = true,
                 }
             }
         }
         self.end_motion(MoveOutcome::Held(reason.clone()), reason);
+    }
+
+    /// For each servo the goal at which it stays where it was just read; `None`: it was not read.
+    fn goals_that_keep(&self) -> Vec<Option<f64>> {
+        let slots = self.exchange.slots.iter().enumerate();
+        match self.commanded.as_ref().zip(self.measured()) {
+            Some((sent, measured)) => slots
+                .map(|(i, slot)| {
+                    self.droop.goal_rad(i, slot, sent[slot.reading.joint], &measured, &self.chains)
+                })
+                .collect(),
+            None => slots.map(|(_, slot)| slot.reading.angle_rad).collect(),
+        }
     }
 
     /// Goals stay as they were sent last, and whatever moved ends.
@@ -266,11 +285,12 @@ impl Controller {
     /// Sends goals where they differ from what the servos were told.
     fn send(&mut self) -> Result<(), BusError> {
         let window = self.options.write_window;
+        let goals_rad = self.goals_that_keep();
         let Some(commanded) = &mut self.commanded else { return Ok(()) };
-        for slot in &mut self.exchange.slots {
-            let known = slot.reading.angle_rad.filter(|_| slot.hold_pending && slot.may_be_written(FRESH));
-            if let Some(angle_rad) = known {
-                commanded[slot.reading.joint] = angle_rad;
+        for (slot, goal_rad) in self.exchange.slots.iter_mut().zip(goals_rad) {
+            let known = goal_rad.filter(|_| slot.hold_pending && slot.may_be_written(FRESH));
+            if let Some(goal_rad) = known {
+                commanded[slot.reading.joint] = goal_rad;
                 slot.hold_pending = false;
             }
         }
@@ -313,6 +333,13 @@ impl Controller {
         let window = self.options.write_window;
         let slot = |joint: &JointIndex| self.exchange.slots.iter().find(|slot| slot.reading.joint == *joint);
         joints.iter().all(|joint| slot(joint).is_some_and(|slot| slot.may_be_written(window)))
+    }
+
+    fn note_droop(&mut self, now: Instant) {
+        let stands = matches!(self.mode, Mode::Hold(_));
+        if let Some((commanded, measured)) = self.commanded.as_ref().zip(self.measured()) {
+            self.droop.note(now, stands, &self.exchange.slots, commanded, &measured);
+        }
     }
 
     /// What is commanded before anything was: what a servo holds already, else where it is. The

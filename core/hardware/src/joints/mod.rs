@@ -16,13 +16,14 @@
 //!   Where a joint stays behind, the whole move waits for it.
 //! - What a [`Grip`] holds is pressed with a limited force, and goals of its fingers go on with them, within
 //!   the same step.
-//! - Holding means that what moved is told to stay at its present angle. A loaded joint hangs a
-//!   little below its goal, and settles by as much again; what stood keeps its goal.
+//! - Holding means that what moved is told to stay at its present angle, above which its goal lies as far as
+//!   the joint hung below it at rest nearby (a few degrees at most); what stood keeps its goal.
 
 mod chains;
 mod command;
 mod controller;
 mod driver;
+mod droop;
 mod exchange;
 mod goals;
 mod grip;

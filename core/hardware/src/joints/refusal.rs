@@ -126,7 +126,7 @@ pub enum Refusal {
     #[error("{0}")]
     Guarded(String),
     /// No torque.
-    #[error("{name} has no torque: switch its torque on first")]
+    #[error("{name} is limp: hold all joints first")]
     Limp {
         /// The joint.
         joint: JointIndex,

@@ -45,6 +45,8 @@ pub struct FakeServo {
     pub powered: bool,
     /// How fast its weight moves it while nothing holds it, ticks/s.
     pub sinks_ticks_s: f64,
+    /// How far below its goal its weight lets it hang while it holds, ticks.
+    pub hangs_ticks: f64,
     /// Times a goal or an "on" switched its torque on.
     pub switched_on: u32,
     /// Whether its limit of torque stays as it is, whatever is written.
@@ -87,6 +89,7 @@ impl FakeServo {
             fault: None,
             powered: true,
             sinks_ticks_s: 0.0,
+            hangs_ticks: 0.0,
             switched_on: 0,
             keeps_its_limit: false,
             angle_limits: None,
@@ -137,7 +140,8 @@ impl FakeServo {
         }
         let speed = self.table.register(Item::MovingSpeed).map_or(0.0, |r| r.si(self.get(Item::MovingSpeed)));
         let largest = speed.min(self.fastest_rad_s) * dt_s / (std::f64::consts::TAU / 4096.0);
-        self.position += (f64::from(self.get(Item::GoalPosition)) - self.position).clamp(-largest, largest);
+        let rests_at = f64::from(self.get(Item::GoalPosition)) - self.hangs_ticks;
+        self.position += (rests_at - self.position).clamp(-largest, largest);
     }
 
     fn data(&mut self, address: u16, length: u16) -> Vec<u8> {

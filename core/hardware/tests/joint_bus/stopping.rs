@@ -126,3 +126,53 @@ fn the_stop_interrupts_the_wait_for_a_servo_that_is_silent() {
     assert!((rests - stood).abs() <= step_ticks, "moved on by {}", rests - stood);
     assert!(chain.told.iter().all(|told| told.at <= pressed + latency), "nothing is said after the hold");
 }
+
+/// How far above where it was read the elbow is held that STOP meets on its way from rest, and how far it has sunk half a
+/// second later, ticks.
+fn stopped_elbow(hangs_ticks: f64, way_rad: f64, until: f64) -> (f64, f64) {
+    let (rig, chain, driver) = ready();
+    let elbow = joint(&rig, "r_elbow_y");
+    let id = id_of(&rig, elbow);
+    chain.lock().servos.get_mut(&id).expect("there").hangs_ticks = hangs_ticks;
+    std::thread::sleep(Duration::from_millis(500));
+    let here = driver.state().of(elbow).and_then(|r| r.angle_rad).expect("read");
+    driver.start_move(turn(elbow, here + way_rad, 0.2)).expect("queued");
+    await_state(
+        &driver,
+        "on its way",
+        |s| matches!(s.motion, Motion::Moving { fraction, .. } if fraction > until),
+    );
+    driver.stop_switch().press();
+    await_state(&driver, "holding", |s| s.motion == Motion::Holding(HoldReason::Stop));
+    std::thread::sleep(Duration::from_millis(500));
+    assert_goals_stay_near(&rig, &chain);
+    let chain = chain.lock();
+    let told =
+        chain.told.iter().rev().find_map(|told| told.goals.iter().find(|(told, ..)| *told == id).copied());
+    let (_, held, _, [read, _]) = told.expect("goals were sent");
+    (f64::from(held) - f64::from(read), f64::from(read) - chain.servos[&id].position)
+}
+
+/// 20 ticks are 1.8°: a stretched arm.
+#[test]
+fn a_loaded_joint_that_is_stopped_does_not_sink_by_what_it_hangs_below_its_goal() {
+    for way_rad in [0.3, -0.3] {
+        let (above, sank) = stopped_elbow(20.0, way_rad, 0.4);
+        assert!(above > 8.0 && above <= 20.0, "{way_rad} rad: held {above} ticks above where it was");
+        assert!((sank + above - 20.0).abs() <= 2.0, "{way_rad} rad: it has sunk by {sank} ticks");
+    }
+}
+
+/// What keeps a joint farther from its goal than its weight does is not pressed against after a stop.
+#[test]
+fn a_joint_that_pressed_against_something_is_held_where_it_was_read() {
+    let (above, _) = stopped_elbow(35.0, 0.3, 0.4);
+    assert!(above.abs() <= 1.0, "held {above} ticks above where it was");
+}
+
+/// Far from where it rested nothing is known of how it hangs.
+#[test]
+fn how_a_joint_hangs_is_forgotten_far_from_where_it_rested() {
+    let (above, _) = stopped_elbow(20.0, 1.2, 0.8);
+    assert!(above.abs() <= 6.0, "held {above} ticks above where it was");
+}

@@ -41,10 +41,10 @@ pub(super) fn said(view: &View) -> Said {
         );
     }
     if let Some(in_hand) = &of_view.held {
-        return grasp::in_hand(in_hand, run.map(|run| &**run)).into();
+        return grasp::in_hand(of_view, in_hand, run.map(|run| &**run)).into();
     }
     if let Some(waits) = of_view.hand_waits {
-        return grasp::of_waiting(waits).into();
+        return grasp::of_waiting(of_view, waits).into();
     }
     let cold = of_view.gates.iter().find(|gate| gate.of == Need::Warmth && gate.state == GateState::Doubtful);
     if let Some(warm) = cold.and_then(|cold| handeye::to_be_warmed(view, cold)) {

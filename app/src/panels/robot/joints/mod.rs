@@ -95,8 +95,13 @@ fn row(ui: &mut Ui, cx: &mut PanelContext<'_>, joint: &JointView) {
     if let Some(angle_rad) = shown.proposed_rad {
         propose(cx, joint, angle_rad);
     }
-    if let Some(on) = shown.torque.filter(|_| robot.connection.is_connected()) {
-        cx.outbox.send(RobotCommand::Torque { joints: vec![joint.joint], on });
+    match shown.torque.filter(|_| robot.connection.is_connected()) {
+        Some(true) => cx.outbox.send(RobotCommand::Torque { joints: vec![joint.joint], on: true }),
+        // The inspector asks first.
+        Some(false) => {
+            (cx.state.robot.chosen_joint, cx.state.robot.letting_go) = (Some(joint.joint), Some(joint.joint));
+        }
+        None => {}
     }
 }
 
@@ -111,8 +116,15 @@ fn problems_line(ui: &mut Ui, robot: &RobotView) {
     }
     let Some((joint, problem)) = with.next() else {
         let all = format::count(robot.joints.len(), "joint");
+        let free = robot.joints.iter().filter(|joint| joint.torque_on == Some(false)).count();
         let how = match (robot.connection.is_connected(), &robot.motion) {
             (true, MotionState::Limp) => "limp",
+            (true, _) if free > 0 => {
+                let text = format!("{} limp", format::count(free, "joint"));
+                let text = RichText::new(text).small().color(Role::Warning.color(theme::tokens(ui)));
+                ui.label(text);
+                return;
+            }
             (true, _) => "without a problem",
             (false, _) => "as last seen",
         };

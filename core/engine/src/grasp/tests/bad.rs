@@ -123,7 +123,7 @@ fn killed_in_any_step_the_record_says_how_far_it_came_and_the_next_grasp_works()
     let view = bench.until("the list", |view| view.grasp.attempts.len() == names.len());
     let said = view.notices.iter().find(|notice| notice.text.contains("The program ended while it grasped"));
     let said = said.expect("the next start says what happened").text.clone();
-    assert!(said.contains("tomato (M5, ") && said.contains("press Home"), "{said}");
+    assert!(said.contains("tomato (M5, ") && said.contains("press Arm home"), "{said}");
     for attempt in view.grasp.attempts.iter() {
         assert!(
             attempt.outcome.is_none() && has_reached(attempt.reached, GraspStep::Approach),

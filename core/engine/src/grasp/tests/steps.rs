@@ -11,7 +11,7 @@ use plumbline_twin::Toy;
 
 use super::bench::{Bench, is_truly_lifted, truly_at_m, words};
 use crate::command::{GraspCommand, HandStep};
-use crate::view::{GraspOutcome, GraspPhase, GraspStep, View};
+use crate::view::{GraspOutcome, GraspPhase, GraspStep, HandWaits, View};
 
 const EASY_M: [f64; 2] = [0.32, -0.15];
 /// Where the right hand hands over (`steps.rs`): in front of the robot, to its side, over the table, m.
@@ -95,8 +95,16 @@ fn the_hand_lifts_hands_over_and_closes_when_each_is_asked_for_by_itself() {
     let [x_m, y_m, over_table_m] = GIVE_M;
     let off_m = palm_m(&rig, &given) - Vector3::new(x_m, y_m, rig.table.height_m + over_table_m);
     assert!(off_m.norm() < 0.02, "it hands over {off_m:?} beside");
-    assert!(bent_rad(&rig, &given) < 0.2, "the hand is open: {}", bent_rad(&rig, &given));
-    assert!(!is_truly_lifted(&given, Toy::Tomato) && given.grasp.held.is_none(), "nobody took it: it falls");
+    assert!(bent_rad(&rig, &given) > 0.4, "it holds on until somebody has it");
+    assert!(is_truly_lifted(&given, Toy::Tomato) && given.grasp.held.is_some(), "it is held out");
+    assert_eq!(given.grasp.hand_waits, Some(HandWaits::Offers));
+    bench.hand(HandStep::Open);
+    let opened = now(&bench);
+    assert!(bent_rad(&rig, &opened) < 0.2, "the hand is open: {}", bent_rad(&rig, &opened));
+    assert!(
+        !is_truly_lifted(&opened, Toy::Tomato) && opened.grasp.held.is_none(),
+        "nobody took it: it falls"
+    );
 
     bench.hand(HandStep::Close);
     let closed = now(&bench);

@@ -24,7 +24,11 @@ impl GraspWorkflow {
         context: &mut Context<'_>,
     ) -> Result<(), Refusal> {
         self.idle()?;
-        let choice = if matches!(what, What::Hand(_)) { self.hand().into() } else { self.choice };
+        let hand = match what {
+            What::Hand(step) => self.hand_for(step, around),
+            What::Plan | What::Grasp => self.hand(),
+        };
+        let choice = if matches!(what, What::Hand(_)) { hand.into() } else { self.choice };
         let needed = self.gates(around, choice);
         // A step of the hand needs neither eyes nor a method.
         let needed: Vec<_> = needed
@@ -34,11 +38,10 @@ impl GraspWorkflow {
         if let Some(gate) = shut(&needed) {
             return Err(Refusal::Shut(gate.text.clone()));
         }
-        if let (What::Hand(HandStep::Open | HandStep::Place | HandStep::Give), Some(held)) =
-            (&what, &mut self.held)
-        {
+        if let (What::Hand(HandStep::Open | HandStep::Place), Some(held)) = (&what, &mut self.held) {
             held.leaves();
         }
+        self.not_made = None;
         let reins = Reins::default();
         let title = match what {
             What::Plan => "planning a grasp",
@@ -53,7 +56,7 @@ impl GraspWorkflow {
             What::Hand(step) => context.start(GraspWork::Hand(Box::new(HandWork {
                 step,
                 rests_on: around.rests_on(),
-                arm: self.hand().name().to_owned(),
+                arm: hand.name().to_owned(),
                 ropes,
                 closed_at_m: self.closed_at_m,
             }))),
@@ -65,7 +68,7 @@ impl GraspWorkflow {
                 })
             }
         };
-        self.running = Some(Running { job, what, reins, ending: false });
+        self.running = Some(Running { job, what, hand, reins, ending: false });
         Ok(())
     }
 

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use plumbline_effects::RobotModel;
-use plumbline_grasp::{Hand, HandChoice, Method};
+use plumbline_grasp::{Halt, Hand, HandChoice, Method};
 use plumbline_model::StereoFrame;
 
 use super::around::GraspAround;
@@ -17,9 +17,10 @@ use super::held::HeldWatch;
 use super::keeping::grasps_in;
 use super::progress::Progress;
 use super::sights::Sights;
+use super::steps::NoStep;
 use super::stepwise::StopAfterEach;
-use super::view::{AttemptView, GraspView, PlannedGrasp};
-use super::waits::Waits;
+use super::view::{AttemptView, GraspView, PlannedGrasp, StepNotMade};
+use super::waits::{Waits, stands_in_view};
 use super::work::{Context, GraspResult, GraspWork};
 use crate::ground::jobs::JobId;
 use crate::ground::notice::NoticeLevel;
@@ -31,6 +32,8 @@ use crate::robot::{Reins, RobotControl};
 pub(in crate::grasp) struct Running {
     pub job: JobId,
     pub what: What,
+    /// With which hand, of a step of one.
+    pub hand: Hand,
     pub reins: Reins,
     pub ending: bool,
 }
@@ -69,6 +72,8 @@ pub struct GraspWorkflow {
     pub(super) held: Option<HeldWatch>,
     /// How a hand was left.
     pub(super) waits: Option<Waits>,
+    /// The step of a hand that was asked for last and could not be made.
+    pub(super) not_made: Option<StepNotMade>,
     /// Whether a hand was moved by itself since the last attempt.
     pub(super) hand_moved: bool,
 }
@@ -78,7 +83,7 @@ fn broken_off(attempt: &AttemptView) -> Option<String> {
     let reached = attempt.reached.filter(|_| attempt.outcome.is_none())?;
     Some(format!(
         "The program ended while it grasped the {} ({}, {}). The arm holds as its servos were told last: look what \
-         is in the hand, open it if you must, then press Home.",
+         is in the hand, open it if you must, then press Arm home, on the screen Grasp.",
         attempt.object.to_lowercase(),
         attempt.method.name().to_uppercase(),
         reached.title().to_lowercase()
@@ -104,6 +109,7 @@ impl GraspWorkflow {
             closed_at_m: None,
             held: None,
             waits: None,
+            not_made: None,
             hand_moved: false,
         }
     }
@@ -117,6 +123,16 @@ impl GraspWorkflow {
         let planned = self.plan.as_ref().map(|plan| plan.hand);
         let last = || self.attempts.first().map(|attempt| attempt.hand);
         self.choice.asked().or(planned).or_else(last).unwrap_or_default()
+    }
+
+    /// The hand that a step is made with: home goes the one that is not, first the one that other steps would be of.
+    pub(in crate::grasp) fn hand_for(&self, step: HandStep, around: &GraspAround) -> Hand {
+        let hand = self.hand();
+        let is_away = |hand: &Hand| stands_in_view(&around.described, *hand, &around.robot);
+        match step {
+            HandStep::Home if !is_away(&hand) => Hand::BOTH.into_iter().find(is_away).unwrap_or(hand),
+            _ => hand,
+        }
     }
 
     /// What was planned with another calibration or model of the robot is not what would be sent now.
@@ -168,6 +184,7 @@ impl Workflow for GraspWorkflow {
                 if let Some(said) = attempts.first().and_then(broken_off) {
                     context.notices.add(NoticeLevel::Warning, said);
                 }
+                self.waits = self.waits.take().or_else(|| Waits::after_restart(attempts.first()?));
                 self.attempts.extend(attempts);
                 for problem in problems {
                     context.notices.add(NoticeLevel::Warning, crate::ground::text::sentence(&problem));
@@ -178,9 +195,13 @@ impl Workflow for GraspWorkflow {
             GraspResult::HandDone(step, done) => {
                 self.plan = None;
                 self.hand_moved = true;
-                let of = (&*around.described, self.hand());
+                let of =
+                    (&*around.described, self.running.as_ref().map_or(self.hand(), |running| running.hand));
                 self.waits = Waits::after_step((step, &done), self.waits.as_ref(), of, &around.robot);
-                if done.is_err() {
+                if let Err(why) = &done {
+                    // Who stopped it knows why.
+                    let was_ended = matches!(why, NoStep::Halted(Halt::Stopped | Halt::Cancelled));
+                    self.not_made = (!was_ended).then(|| StepNotMade { step, why: why.to_string() });
                     context.notices.add(NoticeLevel::Warning, summary);
                 }
             }

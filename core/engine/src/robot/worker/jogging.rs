@@ -93,7 +93,13 @@ impl Worker {
         }
         let fastest = self.peak_speed_rad_s();
         let speeds = match &self.arm_model {
-            Some(arm) => joint_rates(arm, &jog.goal, &jog.rates, fastest),
+            Some(arm) => match joint_rates(arm, &jog.goal, &jog.rates, fastest) {
+                Some(speeds) => speeds,
+                None => {
+                    let _ = self.rest();
+                    return self.refuse(Unable::NoFarther.to_string());
+                }
+            },
             None => return self.refuse(Unable::from(NoDestination::NoTip).to_string()),
         };
         let step_s = now.saturating_duration_since(jog.last).as_secs_f64().min(0.1);
@@ -111,7 +117,7 @@ impl Worker {
         let lookahead_s = JOG_DEADLINE_MS as f64 / 1e3;
         if let Err(reason) = self.paths.check(&jog.goal, &ahead(lookahead_s)) {
             let _ = self.arm().map(|arm| arm.hold());
-            return self.refuse(reason.to_string());
+            return self.refuse(reason.of_jog().to_string());
         }
         let goal = ahead(step_s);
         let setpoint = Setpoint {

@@ -28,6 +28,7 @@ use crate::robot::history::Histories;
 use crate::robot::lead::Leading;
 use crate::robot::path::Paths;
 use crate::robot::poses::PoseLibrary;
+use crate::robot::said::Said;
 use crate::robot::touching::Touching;
 use crate::robot::unable::{SPEEDS, Unable};
 use crate::robot::view::{Connection, PortView, Preview, RobotView};
@@ -88,6 +89,7 @@ pub struct Worker {
     /// How often something was not carried out.
     pub(in crate::robot) refused: u64,
     seen_refusal: u64,
+    said: Said,
     pub(in crate::robot) speed: f64,
     pub(in crate::robot) ports: Option<Arc<[PortView]>>,
     pub(in crate::robot) histories: Histories,
@@ -132,6 +134,7 @@ impl Worker {
             is_unheard: false,
             refused: 0,
             seen_refusal: 0,
+            said: Said::default(),
             speed: 1.0,
             ports: None,
             histories: Histories::new(rig.servos.len()),
@@ -217,7 +220,9 @@ impl Worker {
     }
 
     fn refuse_because(&mut self, reason: String, is_unheard: bool) {
-        self.notes.push((NoticeLevel::Warning, reason.clone()));
+        if self.said.is_news(&reason, Instant::now()) {
+            self.notes.push((NoticeLevel::Warning, reason.clone()));
+        }
         (self.refusal, self.is_unheard) = (Some(reason), is_unheard);
         self.refused += 1;
     }

@@ -183,7 +183,7 @@ fn a_place_of_another_robot_is_not_used() {
     fs::write(&file, text).expect("written");
     let mut desk = Desk::new(folder.path());
     assert!(desk.view().placement.is_none());
-    assert!(desk.said().contains("other") && desk.said().contains("nominal"), "{}", desk.said());
+    assert!(desk.said().contains("other") && desk.said().contains("described place"), "{}", desk.said());
 }
 
 #[test]
