@@ -74,6 +74,8 @@ pub enum ArmState {
     HeadMoving,
     /// Torque off: can be moved by hand, and falls.
     Free,
+    /// Some joints have no torque, and give way; the others are held.
+    PartlyFree,
     /// Stopped and held; nothing moves before the stop is released.
     Stopped,
     /// Connected, and no servo answers: whether it holds is not known.
@@ -92,6 +94,7 @@ impl ArmState {
             Self::Moving => "arm moving",
             Self::HeadMoving => "head moving",
             Self::Free => "arm free",
+            Self::PartlyFree => "arm partly limp",
             Self::Stopped => "stopped",
             Self::Unknown => "arm not known",
             Self::PartlyKnown => "arm partly known",

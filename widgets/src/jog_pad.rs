@@ -266,7 +266,9 @@ impl<'a> JogPad<'a> {
             return;
         }
         let (title, hint) = match (enabled, intent) {
-            (true, Some(_)) if self.refused => ("Does not move".to_owned(), "why stands below".to_owned()),
+            (true, Some(_)) if self.refused => {
+                ("Does not move".to_owned(), "the bottom line says why".to_owned())
+            }
             (true, Some(intent)) => ("Moving".to_owned(), describe(intent)),
             (true, None) => ("Enabled".to_owned(), "press a direction".to_owned()),
             // Which key is which direction stands at each button, where it is pointed at.

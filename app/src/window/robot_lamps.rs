@@ -39,6 +39,7 @@ fn of_robot(robot: &RobotView) -> ArmState {
         MotionState::Unknown => ArmState::Unknown,
         _ if !robot.unknown.is_empty() => ArmState::PartlyKnown,
         _ if robot.stopped => ArmState::Stopped,
+        _ if robot.joints.iter().any(|joint| joint.torque_on == Some(false)) => ArmState::PartlyFree,
         MotionState::Moving { .. } | MotionState::Holding { .. } => ArmState::Held,
     }
 }

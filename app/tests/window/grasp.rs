@@ -9,8 +9,8 @@ use nalgebra::Point3;
 use plumbline::{PlumblineWindow, Screen, WindowSettings};
 use plumbline_engine::view::{
     BetweenSteps, Connection, DetectView, Gate, GateState, GraspHand, GraspMethod, GraspPhase, GraspRun,
-    GraspStep, GraspView, HandWaits, LampState, MotionState, Need, ObjectView, RobotView, StepNotMade,
-    StepState, TouchPhase, TouchView, ToyView, TwinView,
+    GraspStep, GraspView, HandWaits, JointView, LampState, MotionState, Need, ObjectView, RobotView,
+    StepNotMade, StepState, TouchPhase, TouchView, ToyView, TwinView,
 };
 use plumbline_engine::{Command, Destination, GraspCommand, GraspTarget, HandStep, RobotCommand, View};
 use plumbline_model::frame::Point;
@@ -125,6 +125,22 @@ fn a_hand_that_was_stopped_is_led_home_step_by_step() {
     let grasp =
         GraspView { hand_waits: Some(HandWaits::Around), gates: Arc::from([limp]), ..GraspView::default() };
     assert!(!says(&on_grasp(&Fake::over(with(grasp))), "open it first"));
+}
+
+/// A step that the arm would refuse is not offered: what is limp is held first.
+#[test]
+fn a_hand_that_waits_for_a_joint_that_is_limp_offers_to_hold_it() {
+    let mut view = with(GraspView { hand_waits: Some(HandWaits::InView), ..GraspView::default() });
+    let robot = Arc::make_mut(&mut view.robot);
+    let limp = |(i, joint): (usize, &JointView)| JointView { torque_on: Some(i != 3), ..joint.clone() };
+    robot.joints = robot.joints.iter().enumerate().map(limp).collect();
+    let fake = Fake::over(view);
+    let mut window = on_grasp(&fake);
+    assert!(says(&window, "is limp: it gives way, and sinks"));
+    window.run_steps(3);
+    window.key_press_modifiers(Modifiers::COMMAND, Key::Enter);
+    window.run_steps(2);
+    assert_eq!(fake.take_sent(), [Command::from(RobotCommand::Torque { joints: vec![], on: true })]);
 }
 
 #[test]

@@ -12,7 +12,7 @@ type Refusal = Option<Cow<'static, str>>;
 const LETS_GO_RAD: f64 = 0.1;
 
 /// Why a move is not made that would open a hand that holds something, or may.
-pub(super) fn would_drop(view: &View, end: &Posture) -> Refusal {
+pub(crate) fn would_drop(view: &View, end: &Posture) -> Refusal {
     let (rig, measured) = (view.robot.rig.as_ref()?, view.robot.measured.as_ref()?);
     let held = view.grasp.held.as_ref();
     let may_hold = view.grasp.hand_waits.is_some_and(HandWaits::may_hold);

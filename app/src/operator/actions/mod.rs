@@ -26,6 +26,7 @@ pub use grasp::GraspAction;
 pub use grid::{GridAction, USUAL_THING};
 pub use handeye::HandEyeAction;
 pub use labels::{LabelsAction, ScoresAction};
+pub(crate) use let_go::would_drop;
 pub use models::{ModelsAction, too_few, too_few_for, training_refusal};
 pub use names::format_name;
 pub use robot::{MountAction, RobotAction, default_scenario, led_by};

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use plumbline_engine::view::{Connection, MotionState, StepState, TouchPhase, TrialsPhase};
+use plumbline_engine::view::{Connection, GraspPhase, MotionState, StepState, TouchPhase, TrialsPhase};
 use plumbline_engine::{
     Command, Destination, MountCommand, RobotCommand, SourceCommand, SourceSpec, TwinCommand, View,
 };
@@ -249,6 +249,8 @@ pub fn led_by(view: &View) -> Option<&'static str> {
         Some("touches move the arm: pause them first")
     } else if view.grasp.phase.is_paused() {
         Some("a grasp holds the arm: go on with it or end it, on the screen Grasp")
+    } else if matches!(view.grasp.phase, GraspPhase::Hand { .. }) {
+        Some("a step of the hand moves the arm: wait until it is made, or pause it")
     } else if view.grasp.phase.moves() || matches!(view.trials.phase, TrialsPhase::Running { .. }) {
         Some("a grasp moves the arm: pause it first")
     } else if view.mount.tour.is_some() || view.handeye.is_looking {
@@ -292,7 +294,7 @@ fn move_refusal(view: &View) -> Refusal {
         None => Some("no move is shown: drag a joint or choose a pose".into()),
         Some(preview) => match &preview.path {
             Err(why) => Some(why.to_string().into()),
-            Ok(_) => super::let_go::would_drop(view, &preview.end),
+            Ok(_) => super::would_drop(view, &preview.end),
         },
     }
 }

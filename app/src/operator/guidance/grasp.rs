@@ -40,6 +40,12 @@ fn idle(view: &View) -> Guidance {
     if let Some(trouble) = robot::trouble(&view.robot) {
         return trouble;
     }
+    // What is in a hand, or may be, waits for joints that hold.
+    if (grasp.held.is_some() || grasp.hand_waits.is_some())
+        && let Some(limp) = robot::limp_in_part(&view.robot)
+    {
+        return limp;
+    }
     if let Some(held) = &grasp.held {
         return in_hand(grasp, held, grasp.run.as_deref());
     }

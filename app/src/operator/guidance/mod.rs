@@ -55,7 +55,7 @@ pub fn guidance(view: &View, screen: Screen) -> Guidance {
     // A move that is shown in the scene can be gone where it is shown, and be forgotten below the scene.
     let may_show = matches!(screen, Screen::Commission | Screen::HandEye | Screen::Grasp);
     let rests = view.running_job().is_none() && !view.grasp.phase.is_paused();
-    if let Some(guidance) = robot::shown_move(&view.robot).filter(|_| may_show && rests) {
+    if let Some(guidance) = robot::shown_move(view).filter(|_| may_show && rests) {
         return guidance;
     }
     match screen {

@@ -8,6 +8,7 @@ use plumbline_widgets::format;
 
 use super::onward;
 use super::sentence::{Guidance, say};
+use crate::operator::actions::would_drop;
 use crate::operator::words::mount;
 use crate::operator::words::robot::{BY_STOP, is_close, is_limp, move_sentence, moved_name, silent_together};
 use crate::operator::{Action, MountAction, RobotAction, Screen};
@@ -88,7 +89,7 @@ pub(super) fn limp(robot: &RobotView) -> Option<Guidance> {
 }
 
 /// Some joints are limp and others hold: they give way, and no move begins with them.
-fn limp_in_part(robot: &RobotView) -> Option<Guidance> {
+pub(super) fn limp_in_part(robot: &RobotView) -> Option<Guidance> {
     let limp: Vec<&str> = (robot.joints.iter())
         .filter(|joint| joint.torque_on == Some(false))
         .map(|joint| joint.title.as_str())
@@ -135,7 +136,7 @@ pub(super) fn robot(view: &View) -> Guidance {
         return with_way_back(guidance, view);
     }
     if let Some(preview) = &robot.preview {
-        return shown(preview);
+        return shown(preview, view);
     }
     if let Some(why) = &robot.refusal {
         return say(why.clone()).warn();
@@ -156,13 +157,21 @@ pub(super) fn robot(view: &View) -> Guidance {
 }
 
 /// What is shown and would be gone.
-pub(super) fn shown_move(robot: &RobotView) -> Option<Guidance> {
+pub(super) fn shown_move(view: &View) -> Option<Guidance> {
+    let robot = &view.robot;
     let stands = robot.connection.is_connected() && !matches!(robot.motion, MotionState::Moving { .. });
-    robot.preview.as_ref().filter(|_| stands).map(shown)
+    let preview = robot.preview.as_ref().filter(|_| stands)?;
+    // What is in the hand comes first there.
+    would_drop(view, &preview.end).is_none().then(|| shown(preview, view))
 }
 
 /// What the move does; one that passes close by something is no matter of course.
-fn shown(preview: &Preview) -> Guidance {
+fn shown(preview: &Preview, view: &View) -> Guidance {
+    if let Some(why) = would_drop(view, &preview.end) {
+        return say(format!("Shown as a ghost, and not made: {why}."))
+            .warn()
+            .then("Go to Grasp", Action::Go(Screen::Grasp));
+    }
     let guidance = say(move_sentence(preview)).then(moved_name(preview), Action::Robot(RobotAction::Move));
     if is_close(preview) { guidance.warn() } else { guidance }
 }
@@ -173,7 +182,7 @@ pub(super) fn under_way(view: &View) -> Option<Guidance> {
     if !robot.connection.is_connected() || view.mount.step == StepState::Running {
         return None;
     }
-    moving(robot).map(|guidance| with_way_back(guidance, view)).or_else(|| shown_move(robot))
+    moving(robot).map(|guidance| with_way_back(guidance, view)).or_else(|| shown_move(view))
 }
 
 /// Where a grasp holds in the middle, it is gone on with, or ended, on its own screen.

@@ -22,7 +22,7 @@ pub fn show(ui: &mut Ui, view: &View, panels: &mut RobotPanels, outbox: &mut Out
     let robot = &view.robot;
     let chosen = panels.chosen_joint.and_then(|index| robot.joints.iter().find(|joint| joint.joint == index));
     match chosen {
-        Some(joint) => chosen_joint(ui, robot, joint, &mut panels.letting_go, outbox),
+        Some(joint) => chosen_joint(ui, view, joint, &mut panels.letting_go, outbox),
         None if robot.joints.is_empty() => {}
         None => {
             group_heading(ui, "Joint");
@@ -100,11 +100,12 @@ fn shown_move(ui: &mut Ui, view: &View, outbox: &mut Outbox) {
 
 fn chosen_joint(
     ui: &mut Ui,
-    robot: &RobotView,
+    view: &View,
     joint: &JointView,
     letting_go: &mut Option<JointIndex>,
     outbox: &mut Outbox,
 ) {
+    let robot = &view.robot;
     group_heading(ui, &joint.title);
     let angle = joint.angle_rad.map_or_else(|| format::NONE.to_owned(), |a| Quantity::Angle.text(a));
     big_figure(ui, "by the encoder", &angle, Role::Ink);
@@ -133,13 +134,28 @@ fn chosen_joint(
     }
     letting_go.take_if(|asked| *asked != joint.joint || limp || why.is_some());
     if letting_go.is_some() {
-        go_limp(ui, joint, letting_go, outbox);
+        go_limp(ui, view, joint, letting_go, outbox);
     }
 }
 
 /// Asks first, below the button: who presses that twice has let nothing go.
-fn go_limp(ui: &mut Ui, joint: &JointView, letting_go: &mut Option<JointIndex>, outbox: &mut Outbox) {
-    warning(ui, "It sinks by its own weight, with all that hangs on it: hold it by hand.");
+fn go_limp(
+    ui: &mut Ui,
+    view: &View,
+    joint: &JointView,
+    letting_go: &mut Option<JointIndex>,
+    outbox: &mut Outbox,
+) {
+    let arm_of = |name: &str| view.robot.rig.as_ref()?.arm(name);
+    let held = view.grasp.held.as_ref().filter(|held| {
+        arm_of(held.hand.name())
+            .is_some_and(|arm| arm.hand.contains(&joint.joint) || arm.joints.contains(&joint.joint))
+    });
+    let lost = held.map_or_else(String::new, |held| {
+        format!(" The {} may fall out of the {} hand.", held.object.to_lowercase(), held.hand.name())
+    });
+    let said = format!("It sinks by its own weight, with all that hangs on it: hold it by hand.{lost}");
+    warning(ui, &said);
     ui.horizontal_wrapped(|ui| {
         if ui.button("Let it go limp").clicked() {
             outbox.send(RobotCommand::Torque { joints: vec![joint.joint], on: false });

@@ -42,20 +42,21 @@ pub fn joint_rates(
     // A turn that is asked for is no less wanted than a way.
     let counted = if rates.yaw_rad_s == 0.0 { 3 } else { 4 };
     let (of_way, way) = (rows.rows(0, counted).into_owned(), all.rows(0, counted).into_owned());
-    let speeds = exact(&rows, &all)
-        .or_else(|| exact(&of_way, &way))
+    let speeds = exact(&rows, &all, DAMPING)
+        .or_else(|| exact(&of_way, &way, LEAST_GAIN_M_RAD))
         .or_else(|| led_out(arm, commanded, of_way, &way))?;
     let fastest = speeds.amax();
     let slow_down = if fastest > fastest_rad_s { fastest_rad_s / fastest } else { 1.0 };
     Some(speeds.iter().map(|speed| speed * slow_down).collect())
 }
 
-/// The smallest joint speeds that give just this velocity; `None`: there are none but wild ones.
-fn exact(rows: &DMatrix<f64>, wanted: &DVector<f64>) -> Option<DVector<f64>> {
+/// The smallest joint speeds that give just this velocity; `None`: there are none but wild ones, which take it less far
+/// than `least_m_rad`.
+fn exact(rows: &DMatrix<f64>, wanted: &DVector<f64>, least_m_rad: f64) -> Option<DVector<f64>> {
     let speeds = rows.clone().try_svd(true, true, f64::EPSILON, 200)?.solve(wanted, 1e-6).ok()?;
     let astray = (rows * &speeds - wanted).norm();
     // NaN fails both comparisons.
-    let is_so = speeds.norm() * LEAST_GAIN_M_RAD <= wanted.norm() && astray <= ASTRAY * wanted.norm();
+    let is_so = speeds.norm() * least_m_rad <= wanted.norm() && astray <= ASTRAY * wanted.norm();
     is_so.then_some(speeds)
 }
 

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use plumbline_hardware::joints::{Refusal, Setpoint, SetpointKind};
+use plumbline_hardware::joints::{Motion, Refusal, Setpoint, SetpointKind};
 use plumbline_model::robot::Posture;
 
 use super::Worker;
@@ -79,6 +79,12 @@ impl Worker {
         Ok(arm.follow(still)?)
     }
 
+    /// Whether the arm stands at its goals.
+    fn holds(&self) -> bool {
+        let state = self.arm().ok().and_then(|arm| arm.state());
+        state.is_some_and(|state| matches!(state.motion, Motion::Holding(_)))
+    }
+
     /// Sends the next joint speeds of a jog; ends it when its time is over or it would lead
     /// into something.
     pub(super) fn step_jog(&mut self, now: Instant) {
@@ -96,7 +102,9 @@ impl Worker {
             Some(arm) => match joint_rates(arm, &jog.goal, &jog.rates, fastest) {
                 Some(speeds) => speeds,
                 None => {
-                    let _ = self.rest();
+                    if !self.holds() {
+                        let _ = self.rest();
+                    }
                     return self.refuse(Unable::NoFarther.to_string());
                 }
             },
