@@ -17,7 +17,7 @@ use plumbline_model::frame::Point;
 use plumbline_widgets::scene3d::SceneCamera;
 
 use crate::fake::{Fake, click, says, shows};
-use crate::made_up::{connected, everything};
+use crate::made_up::{connected, everything, joint};
 use crate::made_up_objects;
 
 /// In front of everything else for who looks at the scene from where it is looked at first, m.
@@ -129,11 +129,26 @@ fn a_hand_that_was_stopped_is_led_home_step_by_step() {
 
 /// A step that the arm would refuse is not offered: what is limp is held first.
 #[test]
-fn a_hand_that_waits_for_a_joint_that_is_limp_offers_to_hold_it() {
-    let mut view = with(GraspView { hand_waits: Some(HandWaits::InView), ..GraspView::default() });
+fn a_full_hand_whose_arm_is_limp_is_held_before_anything_else() {
+    let grasp = GraspView {
+        hand_waits: Some(HandWaits::Carries),
+        may_hold: Some(GraspHand::Right),
+        ..GraspView::default()
+    };
+    let mut view = with(grasp);
     let robot = Arc::make_mut(&mut view.robot);
-    let limp = |(i, joint): (usize, &JointView)| JointView { torque_on: Some(i != 3), ..joint.clone() };
-    robot.joints = robot.joints.iter().enumerate().map(limp).collect();
+    let limp = |which: &str| {
+        let which = joint(which);
+        robot
+            .joints
+            .iter()
+            .map(|one| JointView { torque_on: Some(one.joint != which), ..one.clone() })
+            .collect::<Vec<_>>()
+    };
+    let (right, left) = (limp("r_shoulder_y"), limp("l_shoulder_y"));
+    robot.joints = left.into();
+    assert!(says(&on_grasp(&Fake::over(view.clone())), "may carry something"), "the other arm");
+    Arc::make_mut(&mut view.robot).joints = right.into();
     let fake = Fake::over(view);
     let mut window = on_grasp(&fake);
     assert!(says(&window, "is limp: it gives way, and sinks"));

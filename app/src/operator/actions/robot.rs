@@ -250,7 +250,7 @@ pub fn led_by(view: &View) -> Option<&'static str> {
     } else if view.grasp.phase.is_paused() {
         Some("a grasp holds the arm: go on with it or end it, on the screen Grasp")
     } else if matches!(view.grasp.phase, GraspPhase::Hand { .. }) {
-        Some("a step of the hand moves the arm: wait until it is made, or pause it")
+        Some("a step of the hand moves the arm: wait until it is made")
     } else if view.grasp.phase.moves() || matches!(view.trials.phase, TrialsPhase::Running { .. }) {
         Some("a grasp moves the arm: pause it first")
     } else if view.mount.tour.is_some() || view.handeye.is_looking {

@@ -41,9 +41,7 @@ fn idle(view: &View) -> Guidance {
         return trouble;
     }
     // What is in a hand, or may be, waits for joints that hold.
-    if (grasp.held.is_some() || grasp.hand_waits.is_some())
-        && let Some(limp) = robot::limp_in_part(&view.robot)
-    {
+    if let Some(limp) = limp_of_full(view) {
         return limp;
     }
     if let Some(held) = &grasp.held {
@@ -112,6 +110,13 @@ fn idle(view: &View) -> Guidance {
     }
 }
 
+/// Limp joints of the arm whose hand holds something, or may.
+fn limp_of_full(view: &View) -> Option<Guidance> {
+    let hand = view.grasp.held.as_ref().map(|held| held.hand).or(view.grasp.may_hold)?;
+    let arm = view.robot.rig.as_ref()?.arm(hand.name())?;
+    robot::limp_in_part(&view.robot, |joint| arm.joints.contains(&joint) || arm.hand.contains(&joint))
+}
+
 /// What is around something is opened, and lifted straight up; then the arm leaves the picture.
 pub(super) fn of_waiting(grasp: &GraspView, waits: HandWaits) -> Guidance {
     if let Some(other) = grasp.not_made.as_ref().and_then(|not_made| instead(not_made, waits)) {
@@ -151,7 +156,7 @@ fn instead(not_made: &StepNotMade, waits: HandWaits) -> Option<Guidance> {
         (HandWaits::Around, HandStep::Open | HandStep::Place) => {
             ("Lifting takes what the fingers are around along.", HandStep::Lift)
         }
-        (HandWaits::Around | HandWaits::Carries, HandStep::Lift) => {
+        (HandWaits::Around, HandStep::Lift) => {
             ("The hand opens where it is; what it holds falls.", HandStep::Open)
         }
         (HandWaits::Carries, HandStep::Place) => (
@@ -162,6 +167,11 @@ fn instead(not_made: &StepNotMade, waits: HandWaits) -> Option<Guidance> {
             ("The hand opens where it is; what it holds falls: hold yours below.", HandStep::Open)
         }
         (HandWaits::Low, HandStep::Lift) => ("The arm goes home from where it is.", HandStep::Home),
+        (HandWaits::Low | HandWaits::InView, HandStep::Home) => {
+            let said =
+                format!("{} was not done: {}. Move the arm there.", not_made.step.title(), not_made.why);
+            return Some(say(said).warn().then("Go to Robot", Action::Go(Screen::Robot)));
+        }
         _ => return None,
     };
     let said = format!("{} was not done: {}. {advice}", not_made.step.title(), not_made.why);

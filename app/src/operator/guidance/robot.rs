@@ -4,6 +4,7 @@ use plumbline_engine::view::{
     CaptureHint, Connection, JointView, MotionState, Preview, RobotView, SourceStatus, StepState, TourWaits,
 };
 use plumbline_engine::{SourceSpec, View};
+use plumbline_model::robot::JointIndex;
 use plumbline_widgets::format;
 
 use super::onward;
@@ -89,9 +90,9 @@ pub(super) fn limp(robot: &RobotView) -> Option<Guidance> {
 }
 
 /// Some joints are limp and others hold: they give way, and no move begins with them.
-pub(super) fn limp_in_part(robot: &RobotView) -> Option<Guidance> {
+pub(super) fn limp_in_part(robot: &RobotView, of: impl Fn(JointIndex) -> bool) -> Option<Guidance> {
     let limp: Vec<&str> = (robot.joints.iter())
-        .filter(|joint| joint.torque_on == Some(false))
+        .filter(|joint| joint.torque_on == Some(false) && of(joint.joint))
         .map(|joint| joint.title.as_str())
         .collect();
     let said = match limp.as_slice() {
@@ -144,7 +145,7 @@ pub(super) fn robot(view: &View) -> Guidance {
     if let Some(guidance) = joint_trouble(robot) {
         return guidance;
     }
-    if let Some(guidance) = limp(robot).or_else(|| limp_in_part(robot)) {
+    if let Some(guidance) = limp(robot).or_else(|| limp_in_part(robot, |_| true)) {
         return guidance;
     }
     match &robot.motion {

@@ -17,7 +17,9 @@ pub fn ghost(cx: &PanelContext<'_>) -> Option<Posture> {
     }
     let number = cx.state.touch.chosen.or_else(|| next_touch(touch))?;
     let planned = touch.plan.as_ref()?.postures.get(number.checked_sub(1)?)?.as_ref()?;
-    let (rig, measured) = (cx.view.robot.rig.as_ref()?, cx.view.robot.measured.as_ref()?);
+    let Some((rig, measured)) = cx.view.robot.rig.as_ref().zip(cx.view.robot.measured.as_ref()) else {
+        return Some(planned.clone());
+    };
     let head = [rig.eyes.pan, rig.eyes.tilt];
     (measured.len() == planned.len()).then(|| planned.with(&head, &measured.of(&head)))
 }

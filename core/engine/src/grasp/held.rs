@@ -56,6 +56,11 @@ impl HeldWatch {
         self.leaves = true;
     }
 
+    /// It goes on to hold it after all.
+    pub fn stays(&mut self) {
+        self.leaves = false;
+    }
+
     /// Looks at the hand; anything but [`SinceHeld::Held`] is the end of it.
     pub fn look(&mut self, robot: &RobotView, now: Instant) -> SinceHeld {
         if !robot.connection.is_connected() {

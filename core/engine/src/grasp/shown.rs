@@ -10,7 +10,7 @@ use super::around::GraspAround;
 use super::gates::{full_hand, gates, may_hold};
 use super::method::methods;
 use super::view::{Gate, GraspPhase, GraspView, HandChoice, HandWaits, InHand};
-use super::waits::stands_in_view;
+use super::waits::{Waits, stands_in_view};
 use super::workflow::{GraspWorkflow, What};
 use crate::ground::step::StepState;
 
@@ -33,6 +33,7 @@ impl GraspWorkflow {
             stops_after_each: self.stops.is_on(),
             held: self.in_hand(),
             hand_waits: self.waits(around),
+            may_hold: self.waits.as_ref().filter(|_| self.held.is_none()).and_then(Waits::may_hold),
             not_made: self.not_made.clone(),
             hand_moved: self.hand_moved,
             gates: self.gates(around, self.choice).into(),

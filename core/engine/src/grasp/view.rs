@@ -37,6 +37,8 @@ pub struct GraspView {
     pub held: Option<InHand>,
     /// How the hand was left, where that matters to what is done next; `None`: it does not, or it was moved since.
     pub hand_waits: Option<HandWaits>,
+    /// Which hand may hold something, where it is not known that it does.
+    pub may_hold: Option<GraspHand>,
     /// The step of a hand that was asked for last, where it could not be made, and why.
     pub not_made: Option<StepNotMade>,
     /// Whether the hand was moved by itself since the last attempt: why that failed says nothing of now.

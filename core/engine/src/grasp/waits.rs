@@ -1,12 +1,12 @@
 //! How a hand was left: around something, low between things, or in the picture.
 
 use plumbline_grasp::{Failure, Halt, Hand, Step};
-use plumbline_model::robot::{Posture, Rig};
+use plumbline_model::robot::{JointIndex, Posture, Rig};
 
 use super::command::HandStep;
 use super::steps::NoStep;
 use super::view::{AttemptView, GraspOutcome, HandWaits};
-use crate::robot::view::{MotionState, RobotView};
+use crate::robot::view::{JointView, MotionState, RobotView};
 
 /// An arm whose joints stand elsewhere by more than this was moved since, rad.
 const MOVED_RAD: f64 = 0.2;
@@ -48,7 +48,7 @@ impl Waits {
     /// are not open.
     pub fn after_restart(last: &AttemptView) -> Option<Self> {
         let may_hold = match &last.outcome {
-            Some(outcome) => *outcome == GraspOutcome::Success,
+            Some(_) => last.is_success(),
             None => matches!(last.reached, Some(Step::Close | Step::Lift | Step::Check)),
         };
         may_hold.then_some(Self { of: last.hand, hand: HandWaits::Carries, at: None })
@@ -61,6 +61,10 @@ impl Waits {
         (rig, of): (&Rig, Hand),
         robot: &RobotView,
     ) -> Option<Self> {
+        // The other hand goes on to hold what it may hold.
+        if let Some(other) = before.filter(|before| before.of != of && before.hand.may_hold()) {
+            return Some(other.clone());
+        }
         let was = before.map(|before| before.hand);
         let lets_go = matches!(step, HandStep::Open | HandStep::Place | HandStep::Close);
         let hand = match (step, done) {
@@ -74,10 +78,32 @@ impl Waits {
             (_, Ok(())) if !is_away(rig, of, robot) => return None,
             (HandStep::Close, Ok(())) => HandWaits::Around,
             // Opened around what it was around.
-            (HandStep::Open, Ok(())) if was == Some(HandWaits::Around) => HandWaits::Low,
+            (HandStep::Open, Ok(())) if matches!(was, Some(HandWaits::Around | HandWaits::Low)) => {
+                HandWaits::Low
+            }
             (_, Ok(())) => HandWaits::InView,
         };
         Some(Self { of, hand, at: robot.measured.clone() })
+    }
+
+    /// The hand that may hold something.
+    pub fn may_hold(&self) -> Option<Hand> {
+        self.hand.may_hold().then_some(self.of)
+    }
+
+    /// After a look at the fingers: once they were open they are around nothing, however they are bent later.
+    pub fn seen(self, rig: &Rig, robot: &RobotView) -> Self {
+        let fingers = rig.arm(self.of.name()).map(|arm| &arm.hand);
+        let known = fingers.and_then(|hand| robot.known(hand).map(|measured| (hand, measured)));
+        let is_open = |(hand, measured): (&Vec<JointIndex>, &Posture)| {
+            hand.iter().all(|joint| measured[*joint].abs() <= BENT_RAD)
+        };
+        let hand = match self.hand {
+            held if !held.may_hold() || !known.is_some_and(is_open) => held,
+            HandWaits::Around => HandWaits::Low,
+            _ => HandWaits::InView,
+        };
+        Self { hand, ..self }
     }
 
     /// How it stands now. Fingers that may be around something stay so until they are open, wherever the arm went: limp
@@ -107,9 +133,14 @@ fn had_begun(why: &NoStep) -> bool {
     matches!(why, NoStep::Halted(Halt::Stopped | Halt::Cancelled | Halt::Lost(_)) | NoStep::Blocked(_))
 }
 
-/// Whether an arm holds, and not at home.
+/// Whether an arm holds, and not at home. One that is not known, or limp, cannot be brought there.
 pub(super) fn stands_in_view(rig: &Rig, hand: Hand, robot: &RobotView) -> bool {
-    matches!(robot.motion, MotionState::Holding { .. }) && is_away(rig, hand, robot)
+    let Some(arm) = rig.arm(hand.name()) else { return false };
+    let is_limp = |joint: &&JointView| arm.joints.contains(&joint.joint) && joint.has_to_be_held();
+    matches!(robot.motion, MotionState::Holding { .. })
+        && robot.known(&arm.joints).is_some()
+        && !robot.joints.iter().any(|joint| is_limp(&joint))
+        && is_away(rig, hand, robot)
 }
 
 /// Whether an arm is known to stand elsewhere than at home.
@@ -218,6 +249,32 @@ mod tests {
         assert_eq!(now(opened.as_ref(), &open), Some(HandWaits::InView));
         let home = after(HandStep::Home, Ok(()), given.as_ref(), &at(0.0, 0.8));
         assert_eq!(now(home.as_ref(), &at(0.0, 0.8)), Some(HandWaits::Carries), "it comes along");
+    }
+
+    #[test]
+    fn a_step_of_one_hand_forgets_nothing_of_the_other() {
+        let right = Waits { of: Hand::Right, hand: HandWaits::Carries, at: None };
+        let home = Waits::after_step(
+            (HandStep::Home, &Ok(())),
+            Some(&right),
+            (&default_rig(), Hand::Left),
+            &at(0.0, 0.8),
+        );
+        assert_eq!(home.and_then(|waits| waits.may_hold()), Some(Hand::Right));
+    }
+
+    /// Fingers are bent to touch, too: once they were seen open they are around nothing.
+    #[test]
+    fn what_was_seen_open_holds_nothing_however_the_fingers_are_bent_later() {
+        let (open, bent) = (at(0.0, 0.0), at(0.6, 0.8));
+        let carries = || Waits { of: Hand::Right, hand: HandWaits::Carries, at: None };
+        assert_eq!(now(Some(&carries().seen(&default_rig(), &bent)), &bent), Some(HandWaits::Carries));
+        let seen = carries().seen(&default_rig(), &open);
+        assert_eq!(now(Some(&seen), &bent), Some(HandWaits::InView));
+        assert!(seen.may_hold().is_none());
+        // What is not known is not open.
+        let unknown = RobotView { unknown: default_rig().arms[0].hand.clone().into(), ..open };
+        assert!(carries().seen(&default_rig(), &unknown).may_hold().is_some());
     }
 
     #[test]

@@ -20,6 +20,8 @@ const DAMPING: f64 = 0.02;
 const LEAST_GAIN_M_RAD: f64 = 0.04;
 /// It goes where it is asked to, to this share of the way.
 const ASTRAY: f64 = 0.02;
+/// A turn that is so much less than the way is not meant: a stick is never pushed quite straight.
+const SLIGHT: f64 = 0.2;
 /// So far ahead it is looked whether a way leads out of where the arm is stretched, rad.
 const OUT_RAD: f64 = 0.01;
 /// A turn of 1 rad/s counts as much as this many m/s.
@@ -40,7 +42,8 @@ pub fn joint_rates(
     let [x, y, z] = rates.velocity_m_s;
     let all = DVector::from_vec(vec![x, y, z, rates.yaw_rad_s * LEVER_M]);
     // A turn that is asked for is no less wanted than a way.
-    let counted = if rates.yaw_rad_s == 0.0 { 3 } else { 4 };
+    let turns = all[3].abs() > SLIGHT * (x * x + y * y + z * z).sqrt();
+    let counted = if turns { 4 } else { 3 };
     let (of_way, way) = (rows.rows(0, counted).into_owned(), all.rows(0, counted).into_owned());
     let speeds = exact(&rows, &all, DAMPING)
         .or_else(|| exact(&of_way, &way, LEAST_GAIN_M_RAD))

@@ -115,12 +115,9 @@ impl State {
         self.rooms.live.use_nominal_lenses(own_lenses);
     }
 
-    /// Whose eyes these are. Where none are open: those of the arm that is connected, whose calibration stays.
+    /// Whose eyes these are. Where none are open: those of the arm that is, or was, connected.
     fn shown_by(&self, source: Option<&SourceSpec>) -> World {
-        match (source, &self.robot.connection) {
-            (None, Connection::Connected { twin, .. }) => World::of_robot(*twin),
-            (source, _) => World::of(source),
-        }
+        source.map_or(self.arm_of, |source| World::of(Some(source)))
     }
 
     /// The source has a message for the operator.

@@ -56,7 +56,8 @@ impl GraspPlanner {
                 return Ok(Some([vec![over], down].concat()));
             }
         }
-        self.lowered(from, z_m)
+        // Below where it stands at home there need be no table.
+        if is_at_home { Ok(None) } else { self.lowered(from, z_m) }
     }
 
     /// The way down to where the palm is at a height (robot frame, m), fingers as they are. An arm that went up gets not

@@ -36,7 +36,7 @@ pub(super) enum Mode {
 
 /// A joint is held at an angle read no longer ago than this; else where it is read next. Held at an
 /// older one, it would be moved back to where it was.
-const FRESH: Duration = Duration::from_millis(40);
+pub(super) const FRESH: Duration = Duration::from_millis(40);
 /// Ends of moves that are remembered.
 const OUTCOMES: usize = 16;
 /// A cycle that took longer moves the goals no farther than this, s.
@@ -75,6 +75,7 @@ pub(super) struct Controller {
 impl Controller {
     pub fn new(exchange: Exchange, scan: BusScan, rig: Arc<Rig>, options: ArmOptions) -> Self {
         let n = exchange.slots.len();
+        let droop = Droop::of(rig.clone(), n);
         let mut guards = options.guards.clone();
         guards.push(Arc::new(FloorGuard::new(&rig).shifted_by(options.floor.clone())));
         let has_slot = |joint: &JointIndex| exchange.slots.iter().any(|slot| slot.reading.joint == *joint);
@@ -88,7 +89,7 @@ impl Controller {
             mode: Mode::Hold(HoldReason::Connected),
             grips: vec![],
             commanded: None,
-            droop: Droop::of(n),
+            droop,
             stop_seen: false,
             behind_since: vec![None; n],
             waits_since: None,
@@ -241,9 +242,7 @@ impl Controller {
         let slots = self.exchange.slots.iter().enumerate();
         match self.commanded.as_ref().zip(self.measured()) {
             Some((sent, measured)) => slots
-                .map(|(i, slot)| {
-                    self.droop.goal_rad(i, slot, sent[slot.reading.joint], &measured, &self.chains)
-                })
+                .map(|(i, slot)| self.droop.goal_rad(i, slot, sent[slot.reading.joint], &measured))
                 .collect(),
             None => slots.map(|(_, slot)| slot.reading.angle_rad).collect(),
         }
@@ -285,7 +284,8 @@ impl Controller {
     /// Sends goals where they differ from what the servos were told.
     fn send(&mut self) -> Result<(), BusError> {
         let window = self.options.write_window;
-        let goals_rad = self.goals_that_keep();
+        let pends = self.exchange.slots.iter().any(|slot| slot.hold_pending);
+        let goals_rad = if pends { self.goals_that_keep() } else { vec![] };
         let Some(commanded) = &mut self.commanded else { return Ok(()) };
         for (slot, goal_rad) in self.exchange.slots.iter_mut().zip(goals_rad) {
             let known = goal_rad.filter(|_| slot.hold_pending && slot.may_be_written(FRESH));
@@ -337,8 +337,8 @@ impl Controller {
 
     fn note_droop(&mut self, now: Instant) {
         let stands = matches!(self.mode, Mode::Hold(_));
-        if let Some((commanded, measured)) = self.commanded.as_ref().zip(self.measured()) {
-            self.droop.note(now, stands, &self.exchange.slots, commanded, &measured);
+        if let Some(measured) = self.measured() {
+            self.droop.note(now, stands, &self.exchange.slots, &measured);
         }
     }
 

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use plumbline_hardware::joints::{ArmDriver, HoldReason, Motion, MoveOutcome, Refusal};
-use plumbline_model::robot::{JointIndex, Rig};
+use plumbline_model::robot::{JointIndex, Posture, Rig};
 
 use super::chain::PtyChain;
 use super::world::{assert_goals_stay_near, await_state, id_of, joint, ready, run, turn};
@@ -128,12 +128,21 @@ fn the_stop_interrupts_the_wait_for_a_servo_that_is_silent() {
 }
 
 /// How far above where it was read the elbow is held that STOP meets on its way from rest, and how far it has sunk half a
-/// second later, ticks.
+/// second later, ticks. Above is where its hand is higher.
 fn stopped_elbow(hangs_ticks: f64, way_rad: f64, until: f64) -> (f64, f64) {
     let (rig, chain, driver) = ready();
     let elbow = joint(&rig, "r_elbow_y");
     let id = id_of(&rig, elbow);
-    chain.lock().servos.get_mut(&id).expect("there").hangs_ticks = hangs_ticks;
+    // Where it begins, its hand is as high as it gets: further on it is clear which way is up.
+    let home = driver.state().of(elbow).and_then(|r| r.angle_rad).expect("read");
+    assert!(matches!(run(&driver, elbow, home + 0.6, 0.5), MoveOutcome::Arrived { .. }));
+    let palm = rig.description.find_link("right_palm_center").expect("of this robot");
+    let height_m = |posture: &Posture| rig.description.forward(posture).all()[palm.0].translation.z;
+    let at = driver.state().measured.clone().expect("read");
+    let servo = rig.servo_of(elbow).expect("it has one");
+    let motor = (servo.motor_rad(at[elbow] + 0.01) - servo.motor_rad(at[elbow])).signum();
+    let up = motor * (height_m(&at.with(&[elbow], &[at[elbow] + 0.01])) - height_m(&at)).signum();
+    chain.lock().servos.get_mut(&id).expect("there").hangs_ticks = up * hangs_ticks;
     std::thread::sleep(Duration::from_millis(500));
     let here = driver.state().of(elbow).and_then(|r| r.angle_rad).expect("read");
     driver.start_move(turn(elbow, here + way_rad, 0.2)).expect("queued");
@@ -150,7 +159,7 @@ fn stopped_elbow(hangs_ticks: f64, way_rad: f64, until: f64) -> (f64, f64) {
     let told =
         chain.told.iter().rev().find_map(|told| told.goals.iter().find(|(told, ..)| *told == id).copied());
     let (_, held, _, [read, _]) = told.expect("goals were sent");
-    (f64::from(held) - f64::from(read), f64::from(read) - chain.servos[&id].position)
+    (up * (f64::from(held) - f64::from(read)), up * (f64::from(read) - chain.servos[&id].position))
 }
 
 /// 20 ticks are 1.8°: a stretched arm.
@@ -160,6 +169,15 @@ fn a_loaded_joint_that_is_stopped_does_not_sink_by_what_it_hangs_below_its_goal(
         let (above, sank) = stopped_elbow(20.0, way_rad, 0.4);
         assert!(above > 8.0 && above <= 20.0, "{way_rad} rad: held {above} ticks above where it was");
         assert!((sank + above - 20.0).abs() <= 2.0, "{way_rad} rad: it has sunk by {sank} ticks");
+    }
+}
+
+/// An arm that rested on something stood above its goal: stopped on its way up it is not sent down onto it again.
+#[test]
+fn a_joint_that_rested_on_something_is_not_sent_down_onto_it_again() {
+    for way_rad in [0.3, -0.3] {
+        let (above, _) = stopped_elbow(-20.0, way_rad, 0.4);
+        assert!(above.abs() <= 1.0, "{way_rad} rad: held {above} ticks above where it was");
     }
 }
 
@@ -173,6 +191,6 @@ fn a_joint_that_pressed_against_something_is_held_where_it_was_read() {
 /// Far from where it rested nothing is known of how it hangs.
 #[test]
 fn how_a_joint_hangs_is_forgotten_far_from_where_it_rested() {
-    let (above, _) = stopped_elbow(20.0, 1.2, 0.8);
+    let (above, _) = stopped_elbow(20.0, -1.2, 0.8);
     assert!(above.abs() <= 6.0, "held {above} ticks above where it was");
 }

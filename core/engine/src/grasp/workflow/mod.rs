@@ -120,6 +120,9 @@ impl GraspWorkflow {
         if let Some(held) = &self.held {
             return held.hand;
         }
+        if let Some(hand) = self.waits.as_ref().and_then(Waits::may_hold) {
+            return hand;
+        }
         let planned = self.plan.as_ref().map(|plan| plan.hand);
         let last = || self.attempts.first().map(|attempt| attempt.hand);
         self.choice.asked().or(planned).or_else(last).unwrap_or_default()
@@ -164,6 +167,7 @@ impl Workflow for GraspWorkflow {
 
     fn view(&mut self, around: &GraspAround, _moment: &Moment) -> Arc<GraspView> {
         self.forget_old_plan(around);
+        self.waits = self.waits.take().map(|waits| waits.seen(&around.described, &around.robot));
         Arc::new(self.shown(around))
     }
 
@@ -184,7 +188,12 @@ impl Workflow for GraspWorkflow {
                 if let Some(said) = attempts.first().and_then(broken_off) {
                     context.notices.add(NoticeLevel::Warning, said);
                 }
-                self.waits = self.waits.take().or_else(|| Waits::after_restart(attempts.first()?));
+                if self.waits.is_none()
+                    && let Some(last) = attempts.first()
+                {
+                    self.waits = Waits::after_restart(last);
+                    self.closed_at_m = self.closed_at_m.or(last.closed_at_m.filter(|_| self.waits.is_some()));
+                }
                 self.attempts.extend(attempts);
                 for problem in problems {
                     context.notices.add(NoticeLevel::Warning, crate::ground::text::sentence(&problem));
@@ -195,6 +204,12 @@ impl Workflow for GraspWorkflow {
             GraspResult::HandDone(step, done) => {
                 self.plan = None;
                 self.hand_moved = true;
+                match (&mut self.held, step, &done) {
+                    // Held out it is there to be taken.
+                    (Some(held), HandStep::Give, Ok(())) => held.leaves(),
+                    (Some(held), HandStep::Home | HandStep::Lift, Ok(())) => held.stays(),
+                    _ => {}
+                }
                 let of =
                     (&*around.described, self.running.as_ref().map_or(self.hand(), |running| running.hand));
                 self.waits = Waits::after_step((step, &done), self.waits.as_ref(), of, &around.robot);
