@@ -5,6 +5,7 @@ use plumbline_engine::view::{
     Need, SinceHeld, StepNotMade, TrialsPhase,
 };
 use plumbline_engine::{HandStep, View};
+use plumbline_model::robot::Arm;
 use plumbline_widgets::format;
 
 use super::robot;
@@ -41,7 +42,7 @@ fn idle(view: &View) -> Guidance {
         return trouble;
     }
     // What is in a hand, or may be, waits for joints that hold.
-    if let Some(limp) = limp_of_full(view) {
+    if let Some(limp) = limp_of_needed(view) {
         return limp;
     }
     if let Some(held) = &grasp.held {
@@ -110,11 +111,17 @@ fn idle(view: &View) -> Guidance {
     }
 }
 
-/// Limp joints of the arm whose hand holds something, or may.
-fn limp_of_full(view: &View) -> Option<Guidance> {
-    let hand = view.grasp.held.as_ref().map(|held| held.hand).or(view.grasp.may_hold)?;
-    let arm = view.robot.rig.as_ref()?.arm(hand.name())?;
-    robot::limp_in_part(&view.robot, |joint| arm.joints.contains(&joint) || arm.hand.contains(&joint))
+/// Limp joints of the arm whose hand holds something, or may; of either arm where either may be taken.
+fn limp_of_needed(view: &View) -> Option<Guidance> {
+    let hand = view.grasp.held.as_ref().map(|held| held.hand).or(view.grasp.may_hold);
+    let is_needed = |arm: &&Arm| match hand.or(view.grasp.hand.asked()) {
+        Some(hand) => arm.name == hand.name(),
+        None => true,
+    };
+    let arms: Vec<&Arm> = view.robot.rig.as_ref()?.arms.iter().filter(is_needed).collect();
+    robot::limp_in_part(&view.robot, |joint| {
+        arms.iter().any(|arm| arm.joints.contains(&joint) || arm.hand.contains(&joint))
+    })
 }
 
 /// What is around something is opened, and lifted straight up; then the arm leaves the picture.

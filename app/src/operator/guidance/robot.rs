@@ -136,6 +136,12 @@ pub(super) fn robot(view: &View) -> Guidance {
     if let Some(guidance) = trouble(robot) {
         return with_way_back(guidance, view);
     }
+    // What gives way goes before what is shown, and before why that was refused. What lost its torque says more itself.
+    let has_no_problem =
+        |joint: JointIndex| robot.joints.iter().any(|one| one.joint == joint && one.problem.is_none());
+    if let Some(guidance) = limp(robot).or_else(|| limp_in_part(robot, has_no_problem)) {
+        return guidance;
+    }
     if let Some(preview) = &robot.preview {
         return shown(preview, view);
     }
@@ -143,9 +149,6 @@ pub(super) fn robot(view: &View) -> Guidance {
         return say(why.clone()).warn();
     }
     if let Some(guidance) = joint_trouble(robot) {
-        return guidance;
-    }
-    if let Some(guidance) = limp(robot).or_else(|| limp_in_part(robot, |_| true)) {
         return guidance;
     }
     match &robot.motion {

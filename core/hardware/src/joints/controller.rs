@@ -239,12 +239,13 @@ impl Controller {
 
     /// For each servo the goal at which it stays where it was just read; `None`: it was not read.
     fn goals_that_keep(&self) -> Vec<Option<f64>> {
-        let slots = self.exchange.slots.iter().enumerate();
+        let slots = self.exchange.slots.iter();
         match self.commanded.as_ref().zip(self.measured()) {
             Some((sent, measured)) => slots
+                .enumerate()
                 .map(|(i, slot)| self.droop.goal_rad(i, slot, sent[slot.reading.joint], &measured))
                 .collect(),
-            None => slots.map(|(_, slot)| slot.reading.angle_rad).collect(),
+            None => slots.map(|slot| slot.reading.angle_rad).collect(),
         }
     }
 
