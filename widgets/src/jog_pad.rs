@@ -121,7 +121,7 @@ pub struct JogPad<'a> {
     what: &'a str,
     why_not: Option<&'a str>,
     enabled_elsewhere: bool,
-    refused: bool,
+    refused: Option<&'a str>,
 }
 
 /// What is asked for right now.
@@ -138,7 +138,7 @@ pub struct JogPadResponse {
 impl<'a> JogPad<'a> {
     /// A pad that moves `what`: "right hand".
     pub fn new(what: &'a str) -> Self {
-        Self { what, why_not: None, enabled_elsewhere: false, refused: false }
+        Self { what, why_not: None, enabled_elsewhere: false, refused: None }
     }
 
     /// Why nothing can be moved now, and what to do; the pad gives nothing then.
@@ -153,9 +153,9 @@ impl<'a> JogPad<'a> {
         self
     }
 
-    /// Whether what is asked for was refused: why stands below the pad.
-    pub fn refused(mut self, refused: bool) -> Self {
-        self.refused = refused;
+    /// What is asked for was refused; in a few words, where it stands why.
+    pub fn refused(mut self, where_why: Option<&'a str>) -> Self {
+        self.refused = where_why;
         self
     }
 
@@ -266,10 +266,10 @@ impl<'a> JogPad<'a> {
             return;
         }
         let (title, hint) = match (enabled, intent) {
-            (true, Some(_)) if self.refused => {
-                ("Does not move".to_owned(), "the bottom line says why".to_owned())
-            }
-            (true, Some(intent)) => ("Moving".to_owned(), describe(intent)),
+            (true, Some(intent)) => match self.refused {
+                Some(where_why) => ("Does not move".to_owned(), where_why.to_owned()),
+                None => ("Moving".to_owned(), describe(intent)),
+            },
             (true, None) => ("Enabled".to_owned(), "press a direction".to_owned()),
             // Which key is which direction stands at each button, where it is pointed at.
             (false, _) if wants => {

@@ -95,13 +95,16 @@ pub(super) fn limp_in_part(robot: &RobotView, of: impl Fn(JointIndex) -> bool) -
         .filter(|joint| joint.torque_on == Some(false) && of(joint.joint))
         .map(|joint| joint.title.as_str())
         .collect();
-    let said = match limp.as_slice() {
+    let (said, held) = match limp.as_slice() {
         [] => return None,
-        [one] => format!("{one} is limp: it gives way, and sinks."),
-        several => format!("{} are limp: they give way, and sink.", format::count(several.len(), "joint")),
+        [one] => (format!("{one} is limp: it gives way, and sinks."), "Held, it stays where it is."),
+        several => (
+            format!("{} are limp: they give way, and sink.", format::count(several.len(), "joint")),
+            "Held, they stay where they are.",
+        ),
     };
-    let holds = if robot.stopped { " Release STOP first." } else { " Held, they stay where they are." };
-    let guidance = say(format!("{said}{holds}")).warn();
+    let then = if robot.stopped { "Release STOP first." } else { held };
+    let guidance = say(format!("{said} {then}")).warn();
     Some(guidance.then("Hold all joints", Action::Robot(RobotAction::TorqueOn)))
 }
 

@@ -30,10 +30,11 @@ fn contents(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let why = cannot_jog(&view.robot).or_else(|| led_by(view).map(Into::into));
     let tip = tip_title(&view.robot).to_lowercase();
     let pad = cx.state.robot.gamepad.clone().filter(|pad| pad.enabled && why.is_none());
+    let is_refused = cx.state.robot.asked == Asked::Jog && view.robot.refusal.is_some();
     let shown = JogPad::new(&tip)
         .why_not(why.as_deref())
         .enabled_elsewhere(pad.is_some())
-        .refused(cx.state.robot.asked == Asked::Jog && view.robot.refusal.is_some())
+        .refused(is_refused.then_some("the bottom line says why"))
         .show(ui, &mut cx.state.robot.jog_speed);
     // Below, where the pad does not move under the finger that holds it, and is in sight in a small window.
     refusal_line(ui, cx, Asked::Jog);

@@ -90,9 +90,8 @@ impl AddedEffect {
 mod tests {
     use super::*;
 
-    #[test]
-    fn what_has_one_name_for_every_joint_stands_once() {
-        let effect = |name: &str, title: &str| AddedEffect {
+    fn effect(name: &str, title: &str) -> AddedEffect {
+        AddedEffect {
             name: name.to_owned(),
             is_named: true,
             title: title.to_owned(),
@@ -100,7 +99,11 @@ mod tests {
             is_of_eyes: false,
             is_left_out: false,
             moved_m: None,
-        };
+        }
+    }
+
+    #[test]
+    fn what_has_one_name_for_every_joint_stands_once() {
         let mut effects = vec![
             effect("joint-zero@r_elbow_y", "Right elbow: zero off"),
             effect("screen-bow@screen", "Screen: glass bows"),
@@ -113,22 +116,18 @@ mod tests {
 
     #[test]
     fn a_small_effect_says_how_little_it_moves() {
-        let effect = |moved_m, is_of_eyes| AddedEffect {
-            name: "finger-roll@tip".to_owned(),
-            is_named: true,
-            title: "Fingertip: it rolls".to_owned(),
-            parameters: vec![],
+        let rolls = |moved_m, is_of_eyes| AddedEffect {
             is_of_eyes,
-            is_left_out: false,
             moved_m,
+            ..effect("finger-roll@tip", "Fingertip: it rolls")
         };
         assert_eq!(
-            effect(Some(1.2e-4), false).told(),
+            rolls(Some(1.2e-4), false).told(),
             "Fingertip: it rolls (small: 0.12 mm at the fingertip)"
         );
-        assert!(effect(Some(1.2e-4), true).told().ends_with("(small: 0.12 mm where the eyes see things)"));
+        assert!(rolls(Some(1.2e-4), true).told().ends_with("(small: 0.12 mm where the eyes see things)"));
         for moved_m in [None, Some(2e-3)] {
-            assert_eq!(effect(moved_m, false).told(), "Fingertip: it rolls");
+            assert_eq!(rolls(moved_m, false).told(), "Fingertip: it rolls");
         }
     }
 }

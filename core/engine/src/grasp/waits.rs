@@ -78,9 +78,7 @@ impl Waits {
             (_, Ok(())) if !is_away(rig, of, robot) => return None,
             (HandStep::Close, Ok(())) => HandWaits::Around,
             // Opened around what it was around.
-            (HandStep::Open, Ok(())) if matches!(was, Some(HandWaits::Around | HandWaits::Low)) => {
-                HandWaits::Low
-            }
+            (HandStep::Open, Ok(())) if was == Some(HandWaits::Around) => HandWaits::Low,
             (_, Ok(())) => HandWaits::InView,
         };
         Some(Self { of, hand, at: robot.measured.clone() })

@@ -337,9 +337,10 @@ impl Controller {
     }
 
     fn note_droop(&mut self, now: Instant) {
-        let stands = matches!(self.mode, Mode::Hold(_));
-        if let Some(measured) = self.measured() {
-            self.droop.note(now, stands, &self.exchange.slots, &measured);
+        if !matches!(self.mode, Mode::Hold(_)) {
+            self.droop.moves();
+        } else if let Some(measured) = self.measured() {
+            self.droop.stands(now, &self.exchange.slots, measured);
         }
     }
 

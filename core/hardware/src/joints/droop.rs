@@ -22,7 +22,7 @@ const KNOWN_WITHIN_RAD: f64 = 1.2;
 #[derive(Clone, Debug)]
 struct Rest {
     /// All joints, as measured.
-    at: Posture,
+    at: Arc<Posture>,
     /// What its servo was told.
     goal_rad: f64,
     /// How far it stood from that.
@@ -42,14 +42,16 @@ impl Droop {
         Self { rig, rests: vec![None; count], stands_since: None }
     }
 
-    /// Takes how the joints stand; `stands`: nothing is on its way. `measured`: of all joints.
-    pub fn note(&mut self, now: Instant, stands: bool, slots: &[Slot], measured: &Posture) {
-        if !stands {
-            self.stands_since = None;
-            return;
-        }
+    /// Something is on its way.
+    pub fn moves(&mut self) {
+        self.stands_since = None;
+    }
+
+    /// Takes how the joints stand while nothing is on its way. `measured`: of all joints.
+    pub fn stands(&mut self, now: Instant, slots: &[Slot], measured: Posture) {
         let since = *self.stands_since.get_or_insert(now);
         let rests_by_now = now.duration_since(since) >= RESTS_AFTER;
+        let measured = Arc::new(measured);
         for (slot, rest) in slots.iter().zip(&mut self.rests) {
             // Limp, or with less force than its own, it says nothing of its weight.
             if !slot.holds_torque() || slot.has_no_force() || slot.force.is_some() {

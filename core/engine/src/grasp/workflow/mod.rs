@@ -167,7 +167,6 @@ impl Workflow for GraspWorkflow {
 
     fn view(&mut self, around: &GraspAround, _moment: &Moment) -> Arc<GraspView> {
         self.forget_old_plan(around);
-        self.waits = self.waits.take().map(|waits| waits.seen(&around.described, &around.robot));
         Arc::new(self.shown(around))
     }
 

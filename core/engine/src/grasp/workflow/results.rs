@@ -58,9 +58,10 @@ impl GraspWorkflow {
         self.attempts.insert(0, attempt);
     }
 
-    /// Whether something is in the hand, so that it has to be looked at.
+    /// Whether something is in the hand, or may be, so that it has to be looked at.
     pub fn is_watching(&self) -> bool {
-        self.held.is_some() && self.running.is_none()
+        let may_hold = self.waits.as_ref().is_some_and(|waits| waits.may_hold().is_some());
+        (self.held.is_some() || may_hold) && self.running.is_none()
     }
 
     /// The robot has something new: is what was grasped still in the hand?
@@ -68,6 +69,7 @@ impl GraspWorkflow {
         if self.running.is_some() {
             return;
         }
+        self.waits = self.waits.take().map(|waits| waits.seen(&around.described, &around.robot));
         let Some(watch) = &mut self.held else { return };
         match watch.look(&around.robot, context.time.instant) {
             SinceHeld::Held => {}
