@@ -9,7 +9,7 @@ use nalgebra::Point3;
 use plumbline::{PlumblineWindow, Screen, WindowSettings};
 use plumbline_engine::view::{
     BetweenSteps, Connection, DetectView, Gate, GateState, GraspHand, GraspMethod, GraspPhase, GraspRun,
-    GraspStep, GraspView, HandWaits, JointView, LampState, MotionState, Need, ObjectView, RobotView,
+    GraspStep, GraspView, HandWaits, InHand, JointView, LampState, MotionState, Need, ObjectView, RobotView,
     StepNotMade, StepState, TouchPhase, TouchView, ToyView, TwinView,
 };
 use plumbline_engine::{Command, Destination, GraspCommand, GraspTarget, HandStep, RobotCommand, View};
@@ -125,6 +125,23 @@ fn a_hand_that_was_stopped_is_led_home_step_by_step() {
     let grasp =
         GraspView { hand_waits: Some(HandWaits::Around), gates: Arc::from([limp]), ..GraspView::default() };
     assert!(!says(&on_grasp(&Fake::over(with(grasp))), "open it first"));
+}
+
+/// What a hand holds goes along with the arm, and a hand that gets warm of it is put down in time.
+#[test]
+fn what_is_held_is_said_on_the_robot_too_and_a_hand_that_gets_warm_of_it_is_told() {
+    let holds = InHand { object: "Tomato".to_owned(), hand: GraspHand::Right };
+    let mut view = with(GraspView { held: Some(holds), ..GraspView::default() });
+    let on_robot = || WindowSettings { screen: Screen::Robot, ..WindowSettings::default() };
+    assert!(says(&Fake::over(view.clone()).window(on_robot()), "holds the tomato, which goes along"));
+    assert!(!says(&on_grasp(&Fake::over(view.clone())), "from holding it"));
+    let (robot, thumb) = (Arc::make_mut(&mut view.robot), joint("r_thumb_x"));
+    let warm = |one: &JointView| match one.joint == thumb {
+        true => JointView { temperature_c: Some(58.0), ..one.clone() },
+        false => one.clone(),
+    };
+    robot.joints = robot.joints.iter().map(warm).collect();
+    assert!(says(&on_grasp(&Fake::over(view)), "is at 58 °C from holding it, and lets go at 70 °C"));
 }
 
 /// A step that the arm would refuse is not offered: what is limp is held first.

@@ -21,7 +21,7 @@ fn planner(rig: &Arc<Rig>) -> GraspPlanner {
 
 /// A robot that is exactly as described, with toys of this friction and mass.
 fn robot() -> Scenario {
-    let of = |name: &str| std::env::var(name).ok().and_then(|text| text.parse::<f64>().ok()).unwrap_or(1.0);
+    let of = |name: &str| number(name).unwrap_or(1.0);
     let (friction, mass, size) = (of("PLUMBLINE_FRICTION"), of("PLUMBLINE_MASS"), of("PLUMBLINE_SIZE"));
     let text = format!(
         "format = 1\nname = \"toys\"\ntitle = \"Toys\"\nabout = \"Other toys.\"\n[contact]\n\
@@ -47,6 +47,23 @@ fn off_m() -> [f64; 3] {
     let off_mm = std::env::var("PLUMBLINE_OFF_MM").unwrap_or_default();
     let off_mm: Vec<f64> = off_mm.split(' ').filter_map(|text| text.parse().ok()).collect();
     if let [x, y, z] = off_mm[..] { [x, y, z].map(|mm| mm * 1e-3) } else { [0.0; 3] }
+}
+
+/// A number of this name in the environment.
+fn number(name: &str) -> Option<f64> {
+    std::env::var(name).ok()?.parse().ok()
+}
+
+/// Holds on for ten seconds, or `PLUMBLINE_HOLDS_S`; with `PLUMBLINE_EASED` then as long once more with this share of
+/// the force, as a hand that got warm does.
+fn hold(twin: &mut Lockstep, rig: &Rig) {
+    let holds_s = number("PLUMBLINE_HOLDS_S").unwrap_or(HOLDS_S);
+    twin.wait(holds_s);
+    let Some(share) = number("PLUMBLINE_EASED") else { return };
+    for finger in rig.arms.iter().flat_map(|arm| arm.hand.iter().copied()) {
+        twin.limit(finger, share * force(rig, finger));
+    }
+    twin.wait(holds_s);
 }
 
 /// Closes the hand as a grip does, the thumb first; the posture in which all is closed.
@@ -108,7 +125,7 @@ fn lifted_m(toy: Toy, at_m: [f64; 2], off_m: [f64; 3]) -> Result<(f64, f64, f64)
     if std::env::var_os("PLUMBLINE_CREEP").is_some() {
         creep(&mut twin, &rig, toy);
     }
-    twin.wait(HOLDS_S);
+    hold(&mut twin, &rig);
     Ok((place(&mut twin).z - before.z, plan.level, seconds))
 }
 

@@ -1,8 +1,8 @@
 //! What to do next with grasping: one button, named by what it does.
 
 use plumbline_engine::view::{
-    Gate, GateState, GraspOutcome, GraspPhase, GraspRun, GraspView, HandWaits, InHand, JointView, LampState,
-    Need, SinceHeld, StepNotMade, TrialsPhase,
+    Gate, GateState, GraspHand, GraspOutcome, GraspPhase, GraspRun, GraspView, HandWaits, InHand, JointView,
+    LampState, Need, RobotView, SinceHeld, StepNotMade, TrialsPhase,
 };
 use plumbline_engine::{HandStep, View};
 use plumbline_model::robot::Arm;
@@ -46,7 +46,7 @@ fn idle(view: &View) -> Guidance {
         return limp;
     }
     if let Some(held) = &grasp.held {
-        return in_hand(grasp, held, grasp.run.as_deref());
+        return in_hand(view, held, grasp.run.as_deref());
     }
     // All else that is shut goes before: nothing moves then.
     let is_shut = grasp.shut().is_some_and(|gate| gate.of != Need::Hand);
@@ -205,7 +205,8 @@ fn doubt(view: &View) -> Option<&str> {
 }
 
 /// What is in a hand has to leave it before anything else is grasped.
-pub(super) fn in_hand(grasp: &GraspView, held: &InHand, run: Option<&GraspRun>) -> Guidance {
+pub(super) fn in_hand(view: &View, held: &InHand, run: Option<&GraspRun>) -> Guidance {
+    let grasp = &view.grasp;
     if grasp.hand_waits == Some(HandWaits::Offers) {
         return held_out();
     }
@@ -219,7 +220,24 @@ pub(super) fn in_hand(grasp: &GraspView, held: &InHand, run: Option<&GraspRun>) 
         true => "Say whether you see it held; putting it down lowers the arm and opens the hand.",
         false => "Putting it down lowers the arm and opens the hand.",
     };
-    say(format!("{there} {then}")).then("Put it down", Action::Grasp(GraspAction::Hand(HandStep::Place)))
+    let said = match warm_of_holding(&view.robot, held.hand) {
+        Some(warm) => say(format!("{there} {warm} {then}")).warn(),
+        None => say(format!("{there} {then}")),
+    };
+    said.then("Put it down", Action::Grasp(GraspAction::Hand(HandStep::Place)))
+}
+
+/// That a hand gets warm of what it holds; pressed on and on it would let go.
+fn warm_of_holding(robot: &RobotView, hand: GraspHand) -> Option<String> {
+    let rig = robot.rig.as_ref()?;
+    let fingers = &rig.arm(hand.name())?.hand;
+    let of_hand = robot.joints.iter().filter(|joint| fingers.contains(&joint.joint));
+    let warm = of_hand.filter_map(|joint| Some((joint.temperature_c?, joint)));
+    let (warmest_c, joint) = warm.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    (warmest_c >= rig.gate.warm_c).then(|| {
+        let (at_c, hot_c) = (format::fixed(warmest_c, 0), format::fixed(rig.gate.hot_c, 0));
+        format!("{} is at {at_c} °C from holding it, and lets go at {hot_c} °C.", joint.title)
+    })
 }
 
 /// Whether what was held is not in the hand any more.

@@ -154,7 +154,7 @@ fn commissioning(view: &View) -> Guidance {
     let start = Action::Commission(CommissionAction::Start);
     match commission.began {
         _ if commission.is_done() => match &view.grasp.held {
-            Some(held) => grasp::in_hand(&view.grasp, held, None),
+            Some(held) => grasp::in_hand(view, held, None),
             None => say("All steps are done.").then("Grasp", Action::Go(Screen::Grasp)),
         },
         Some(_) => say("Commissioning goes on where it was. The button moves nothing.")

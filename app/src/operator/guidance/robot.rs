@@ -159,7 +159,26 @@ pub(super) fn robot(view: &View) -> Guidance {
         MotionState::Holding { why: Some(why) } if robot.stopped || !why.starts_with(BY_STOP) => {
             say(format!("Holds where it stands: {} Show a move, or jog.", closed(why))).warn()
         }
-        _ => say("Drag a joint or choose a pose: it is shown first, and moves only when you say so."),
+        _ => {
+            let said = "Drag a joint or choose a pose: it is shown first, and moves only when you say so.";
+            match carried(view) {
+                Some(carried) => say(format!("{carried} {said}")),
+                None => say(said),
+            }
+        }
+    }
+}
+
+/// What a hand holds, or may, goes along with whatever the arm does.
+fn carried(view: &View) -> Option<String> {
+    let grasp = &view.grasp;
+    match (&grasp.held, grasp.may_hold) {
+        (Some(held), _) => {
+            let object = held.object.to_lowercase();
+            Some(format!("The {} hand holds the {object}, which goes along.", held.hand.name()))
+        }
+        (None, Some(hand)) => Some(format!("The {} hand may hold something, which goes along.", hand.name())),
+        (None, None) => None,
     }
 }
 

@@ -23,9 +23,7 @@ pub fn gates(around: &GraspAround, choice: HandChoice, method: Method) -> Vec<Ga
         let hands = hands.unwrap_or(&[Hand::Left]);
         gates.push(stop(robot));
         gates.extend(run(around));
-        gates.push(of_any(hands, |hand| joints(around, hand.name())));
-        gates.push(of_any(hands, |hand| load(around, hand.name())));
-        gates.push(of_any(hands, |hand| rest(around, hand.name())));
+        gates.extend(of_any(around, hands));
     }
     gates.extend([eyes(around), places(around)]);
     let evidence = around.calibration.as_ref().and_then(|calibration| calibration.evidence.as_ref());
@@ -60,16 +58,37 @@ pub fn may_hold(waits: HandWaits) -> Option<Gate> {
     Some(closed(Need::Hand, text))
 }
 
-/// What lets any of the hands pass; where not all of them pass, the reason is said.
-fn of_any(hands: &[Hand], gate: impl Fn(Hand) -> Gate) -> Gate {
-    let mut gates: Vec<Gate> = hands.iter().map(|hand| gate(*hand)).collect();
-    gates.sort_by_key(|gate| gate.state == GateState::Shut);
-    let first = gates.remove(0);
-    match gates.into_iter().find(|gate| gate.state == GateState::Shut) {
-        Some(shut) if first.state != GateState::Shut => {
-            doubtful(first.of, format!("{} The other hand grasps.", shut.text))
+/// What one hand has to pass.
+fn of_hand(around: &GraspAround, hand: Hand) -> [Gate; 3] {
+    [joints, load, rest].map(|gate| gate(around, hand.name()))
+}
+
+/// The same of the first hand that passes; of one that does not, the reason is said with it. Where none does, of the
+/// first.
+fn of_any(around: &GraspAround, hands: &[Hand]) -> Vec<Gate> {
+    let all: Vec<[Gate; 3]> = hands.iter().map(|hand| of_hand(around, *hand)).collect();
+    let Some(fit) = all.iter().find(|gates| shut(*gates).is_none()) else {
+        return all.into_iter().next().map_or_else(Vec::new, Vec::from);
+    };
+    let said = |(i, gate): (usize, &Gate)| {
+        let unfit = all.iter().map(|gates| &gates[i]).find(|gate| gate.state == GateState::Shut);
+        match unfit {
+            Some(unfit) => doubtful(gate.of, format!("{} The other hand grasps.", unfit.text)),
+            None => gate.clone(),
         }
-        _ => first,
+    };
+    fit.iter().enumerate().map(said).collect()
+}
+
+/// The hand that is left where either might be taken and one of them may not move; else what was chosen.
+pub fn able(around: &GraspAround, choice: HandChoice, method: Method) -> HandChoice {
+    let may = |hand: &Hand| shut(&of_hand(around, *hand)).is_none();
+    match method.hands(choice).unwrap_or_default() {
+        [_] | [] => choice,
+        hands => match hands.iter().copied().filter(may).collect::<Vec<_>>()[..] {
+            [only] => only.into(),
+            _ => choice,
+        },
     }
 }
 
@@ -359,5 +378,29 @@ mod tests {
             assert!(shut.text.contains("Right elbow pushes against something"), "{}", shut.text);
             assert_eq!(pushes(of, "left").state, GateState::Open, "the other arm is not used");
         }
+    }
+
+    #[test]
+    fn where_one_arm_may_not_move_the_other_one_is_sent_and_not_merely_said_to_be() {
+        let hand = |around: &GraspAround, choice, method| able(around, choice, method);
+        let fit = around(0.0, 31.0);
+        assert_eq!(hand(&fit, HandChoice::Auto, Method::M5), HandChoice::Auto);
+        for unfit in [around(0.9, 31.0), around(0.0, 72.0)] {
+            assert_eq!(hand(&unfit, HandChoice::Auto, Method::M5), HandChoice::Left);
+            // What was asked for is not exchanged, and published methods know one hand.
+            assert_eq!(hand(&unfit, HandChoice::Right, Method::M5), HandChoice::Right);
+            assert_eq!(hand(&unfit, HandChoice::Auto, Method::M3), HandChoice::Auto);
+        }
+        // One arm that pushes, and another one that is limp: neither may move, and none is said to grasp.
+        let mut neither = around(0.9, 31.0);
+        let robot = Arc::make_mut(&mut neither.robot);
+        let let_go =
+            |joint: &JointView| JointView { torque_on: Some(!joint.name.starts_with("l_")), ..joint.clone() };
+        robot.joints = robot.joints.iter().map(let_go).collect();
+        assert_eq!(hand(&neither, HandChoice::Auto, Method::M5), HandChoice::Auto);
+        assert!(shut(&of_any(&neither, &Hand::BOTH)).is_some());
+        let unfit = of_any(&around(0.9, 31.0), &Hand::BOTH);
+        assert!(shut(&unfit).is_none());
+        assert!(unfit.iter().any(|gate| gate.text.ends_with("The other hand grasps.")), "{unfit:?}");
     }
 }

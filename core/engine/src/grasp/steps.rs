@@ -157,6 +157,7 @@ impl Hand<'_> {
             done => done?,
         }
         self.body.wait(0.3)?;
+        self.context.report(0.8, "lifting the open hand");
         self.body.let_fingers_touch()?;
         let heading_rad = self.planner.arm().heading_rad(&open);
         let up = self.planner.vertical(heading_rad, &open, GraspPlanner::LIFT_M);
@@ -175,6 +176,7 @@ impl Hand<'_> {
     /// It holds on until somebody has it: the hand opens by a step of its own.
     fn give(&mut self, left: bool) -> Result<(), NoStep> {
         self.clear_the_table()?;
+        self.context.report(0.4, "holding it out");
         let from = self.body.commanded()?;
         let side = if left { 1.0 } else { -1.0 };
         let table_m = self.planner.arm().rig().table.height_m;
@@ -187,6 +189,7 @@ impl Hand<'_> {
 
     fn home(&mut self) -> Result<(), NoStep> {
         self.clear_the_table()?;
+        self.context.report(0.4, "going home");
         let from = self.body.commanded()?;
         let arm = self.planner.arm();
         let home = from.with(arm.joints(), &arm.rig().home().of(arm.joints()));

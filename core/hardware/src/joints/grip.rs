@@ -94,7 +94,7 @@ impl Controller {
             let sent_rad = commanded[joint];
             self.grips.push(Gripping { joint, goal_rad, force, speed_rad_s, sent_rad });
             if let Some(slot) = self.exchange.slots.iter_mut().find(|slot| slot.reading.joint == joint) {
-                (slot.force, slot.force_tries) = (Some(Force::Limited(force)), 0);
+                (slot.force, slot.eased, slot.force_tries) = (Some(Force::Limited(force)), 1.0, 0);
             }
         }
         Ok(())
@@ -104,7 +104,7 @@ impl Controller {
     pub(super) fn end_grip(&mut self, joints: &[JointIndex]) {
         self.grips.retain(|grip| !joints.contains(&grip.joint));
         for slot in &mut self.exchange.slots {
-            if joints.contains(&slot.reading.joint) && matches!(slot.force, Some(Force::Limited(_))) {
+            if joints.contains(&slot.reading.joint) && slot.is_limited() {
                 (slot.force, slot.force_tries) = (Some(Force::Own), 0);
             }
         }
@@ -120,6 +120,7 @@ impl Controller {
 
     /// The goals of fingers that grip go on.
     pub(super) fn advance_grips(&mut self, dt_s: f64) {
+        self.ease_warm_hands();
         if self.grips.is_empty() {
             return;
         }
@@ -187,7 +188,7 @@ impl Controller {
                 }
                 Refusal::Hot { joint, name, temperature_c, limit_c }
             } else if slot.force_tries > TRIES {
-                Refusal::Force { joint, name, share: grip.force }
+                Refusal::Force { joint, name, share: grip.force * slot.eased }
             } else {
                 return true;
             };
@@ -204,7 +205,9 @@ impl Slot {
     /// Whether its limit is as it was told.
     pub(super) fn has_force(&self, force: Force) -> bool {
         match force {
-            Force::Limited(share) => self.reading.force.is_some_and(|now| (now - share).abs() <= TAKEN),
+            Force::Limited(share) => {
+                self.reading.force.is_some_and(|now| (now - share * self.eased).abs() <= TAKEN)
+            }
             Force::Own => false,
         }
     }
@@ -225,7 +228,7 @@ impl Exchange {
             Some(Force::Limited(share)) => {
                 let slot = &self.slots[i];
                 let register = slot.unit.table.register(Item::TorqueLimit).copied();
-                let raw = register.and_then(|register| Some((register, register.raw(share)?)));
+                let raw = register.and_then(|register| Some((register, register.raw(share * slot.eased)?)));
                 if let Some((register, raw)) = raw {
                     let id = slot.unit.id();
                     self.bus.write_once(id, register.address, &register.bytes(raw))?;

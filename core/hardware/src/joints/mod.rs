@@ -15,7 +15,7 @@
 //! - A [`Refusal`] says which joint, which limit and by how much; nothing is clamped in silence.
 //!   Where a joint stays behind, the whole move waits for it.
 //! - What a [`Grip`] holds is pressed with a limited force, and goals of its fingers go on with them, within
-//!   the same step.
+//!   the same step. A hand that gets warm of it presses less.
 //! - Holding means that what moved is told to stay at its present angle, above which its goal lies as far as
 //!   the joint hung below it at rest nearby (a few degrees at most); what stood keeps its goal.
 
@@ -24,6 +24,7 @@ mod command;
 mod controller;
 mod driver;
 mod droop;
+mod easing;
 mod exchange;
 mod goals;
 mod grip;

@@ -83,6 +83,14 @@ pub(super) fn warm(title: &str, temperature_c: f64, gate: &Gate) -> String {
     )
 }
 
+/// A servo that gets warm because it presses on what is held.
+pub(super) fn warm_of_holding(title: &str, temperature_c: f64, gate: &Gate) -> String {
+    format!(
+        "{title} is at {temperature_c:.0} °C from pressing, so its hand presses less; at {:.0} °C it lets go: put down what it holds",
+        gate.hot_c
+    )
+}
+
 /// Nobody answers any more.
 pub(super) const ALL_SILENT: &str = "no servo answers: their power seems to be off, or the cable is unplugged. When they are back nothing moves and all are limp until you switch torque on";
 

@@ -12,7 +12,7 @@ use super::driver::expected_servos;
 use super::grip::Grip;
 use super::progress::Progress;
 use super::refusal::{HoldReason, Refusal, Unheard};
-use super::slot::{Bar, Force, Identity, Slot};
+use super::slot::{Bar, Identity, Slot};
 use super::torque::{barred, unknown};
 use super::trajectory::Trajectory;
 use crate::dynamixel::{BusError, BusScan, ScanRange};
@@ -163,7 +163,7 @@ impl Controller {
             slot.holds_torque()
                 && slot.is_known()
                 && slot.silence() < RECENT
-                && !matches!(slot.force, Some(Force::Limited(_)))
+                && !slot.is_limited()
                 && !grips(slot.reading.joint)
         };
         match &self.mode {

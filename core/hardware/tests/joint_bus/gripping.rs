@@ -202,6 +202,49 @@ fn a_thumb_that_does_not_take_its_limit_is_named_and_stays_where_it_is_while_the
     assert_goals_stay_near(&rig, &chain);
 }
 
+/// What gets warm of pressing presses less, with all fingers of its hand, and after a stop too.
+#[test]
+fn a_hand_that_gets_warm_presses_less_with_all_its_fingers() {
+    let (rig, chain, driver) = ready();
+    let (finger, id) = finger(&rig);
+    let thumb = joint(&rig, "r_thumb_x");
+    let thumb_id = id_of(&rig, thumb);
+    let fingers = [(finger, 0.5), (thumb, 0.8)];
+    let fingers = fingers.map(|(joint, force)| GripFinger { joint, goal_rad: bent_rad(&rig, joint), force });
+    let both = Grip { fingers: fingers.to_vec(), speed_rad_s: 1.0 };
+    let warm = |to_c: u16| {
+        chain.lock().servos.get_mut(&thumb_id).expect("there").set(Item::PresentTemperature, to_c);
+    };
+    let limited = |what: &str, [of_finger, of_thumb]: [f64; 2]| {
+        await_state(&driver, what, |state| {
+            let force = |joint| state.of(joint).and_then(|reading| reading.force);
+            let near = |force: Option<f64>, to: f64| force.is_some_and(|force| (force - to).abs() < 2e-3);
+            near(force(finger), of_finger) && near(force(thumb), of_thumb)
+        })
+    };
+    for blocked in [id, thumb_id] {
+        block(&chain, blocked, true);
+    }
+    driver.grip(both.clone()).expect("queued");
+    limited("as told", [0.5, 0.8]);
+    warm(62);
+    let eased = limited("less, of both", [0.4, 0.64]);
+    let said = eased.warnings.iter().find(|warning| warning.contains("62 °C")).expect("it is said");
+    assert!(said.contains("presses less") && said.contains("put down"), "{said}");
+    // A degree less does not press it out of the hand again.
+    warm(50);
+    std::thread::sleep(Duration::from_millis(300));
+    limited("as eased", [0.4, 0.64]);
+    driver.grip(both).expect("queued");
+    limited("told anew", [0.5, 0.8]);
+    // A stop ends that fingers follow what gives way; they press on, and get warm of it.
+    driver.stop_switch().press();
+    std::thread::sleep(Duration::from_millis(100));
+    warm(66);
+    limited("after the stop", [0.35, 0.56]);
+    assert_goals_stay_near(&rig, &chain);
+}
+
 const PORT: &str = "PLUMBLINE_TEST_GRIP_PORT";
 
 /// Run as a process of its own by the test below; does nothing otherwise.

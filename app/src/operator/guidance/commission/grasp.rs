@@ -41,7 +41,7 @@ pub(super) fn said(view: &View) -> Said {
         );
     }
     if let Some(in_hand) = &of_view.held {
-        return grasp::in_hand(of_view, in_hand, run.map(|run| &**run)).into();
+        return grasp::in_hand(view, in_hand, run.map(|run| &**run)).into();
     }
     if let Some(waits) = of_view.hand_waits {
         return grasp::of_waiting(of_view, waits).into();

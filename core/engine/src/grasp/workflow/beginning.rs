@@ -5,7 +5,7 @@ use crate::grasp::around::GraspAround;
 use crate::grasp::attempt::Attempt;
 use crate::grasp::body::{EyesOn, Ropes};
 use crate::grasp::command::{GraspTarget, HandStep};
-use crate::grasp::gates::shut;
+use crate::grasp::gates::{able, shut};
 use crate::grasp::keeping::grasps_in;
 use crate::grasp::progress::Progress;
 use crate::grasp::refusal::Refusal;
@@ -84,7 +84,7 @@ impl GraspWorkflow {
         let stops = self.stops_in(around);
         Attempt {
             rests_on: around.rests_on(),
-            hand: self.choice,
+            hand: able(around, self.choice, self.method),
             method: self.method,
             target,
             ropes,

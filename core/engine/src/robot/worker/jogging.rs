@@ -2,6 +2,8 @@
 
 use std::time::{Duration, Instant};
 
+use plumbline_effects::ModelArm;
+use plumbline_effects::rig_model::Conditions;
 use plumbline_hardware::joints::{Motion, Refusal, Setpoint, SetpointKind};
 use plumbline_model::robot::Posture;
 
@@ -13,6 +15,14 @@ use crate::robot::unable::{FASTEST_JOG, NoDestination, Unable};
 
 /// An arm may hang so far from its goals by its own weight and what rubs, rad.
 const HANGS_RAD: f64 = 0.06;
+/// A tip that goes level and sank by less than this is not lifted, m …
+const SINKS_M: f64 = 1e-3;
+/// … nor one that something presses down, m.
+const PRESSED_DOWN_M: f64 = 0.04;
+/// What it sank is taken off in half a second, 1/s …
+const LIFTS_PER_S: f64 = 2.0;
+/// … and it rises no steeper than this share of its way.
+const STEEPEST: f64 = 0.3;
 /// Goals that stand still are followed for so long: two cycles of the bus.
 const STILL_FOR: Duration = Duration::from_millis(32);
 
@@ -23,6 +33,8 @@ pub(in crate::robot) struct Jog {
     until: Instant,
     last: Instant,
     goal: Posture,
+    /// How high the tip was, by the encoders, when it was asked to go level; `None`: it is not.
+    level_m: Option<f64>,
 }
 
 impl Worker {
@@ -39,13 +51,18 @@ impl Worker {
         }
         let until = now + Duration::from_millis(JOG_DEADLINE_MS);
         match &mut self.jog {
-            Some(jog) => (jog.rates, jog.until) = (rates, until),
+            Some(jog) => {
+                if rates.velocity_m_s[2] != 0.0 {
+                    jog.level_m = None;
+                }
+                (jog.rates, jog.until) = (rates, until);
+            }
             None => {
                 let goal = self.present().ok_or(Unable::NotRead)?;
                 self.knows(self.chain.joints())?;
                 self.refusal = None;
                 (self.preview, self.running) = (None, None);
-                self.jog = Some(Jog { rates, until, last: now, goal });
+                self.jog = Some(Jog { rates, until, last: now, goal, level_m: None });
                 self.step_jog(now);
             }
         }
@@ -79,6 +96,18 @@ impl Worker {
         Ok(arm.follow(still)?)
     }
 
+    /// Joint speeds that take the tip where it is asked to; what goes level is lifted as far as it sank by its weight on
+    /// the way. `None`: the arm reaches no farther.
+    fn level_rates(&self, arm: &ModelArm, jog: &mut Jog, fastest_rad_s: f64) -> Option<Vec<f64>> {
+        let lifted = self.present().and_then(|measured| {
+            let height_m = arm.tip(&measured, &Conditions::default()).coords.z;
+            let level_m = *jog.level_m.get_or_insert(height_m);
+            lifted(&jog.rates, level_m - height_m)
+        });
+        let lifted = lifted.and_then(|rates| joint_rates(arm, &jog.goal, &rates, fastest_rad_s));
+        lifted.or_else(|| joint_rates(arm, &jog.goal, &jog.rates, fastest_rad_s))
+    }
+
     /// Whether the arm stands at its goals.
     fn holds(&self) -> bool {
         let state = self.arm().ok().and_then(|arm| arm.state());
@@ -99,7 +128,7 @@ impl Worker {
         }
         let fastest = self.peak_speed_rad_s();
         let speeds = match &self.arm_model {
-            Some(arm) => match joint_rates(arm, &jog.goal, &jog.rates, fastest) {
+            Some(arm) => match self.level_rates(arm, &mut jog, fastest) {
                 Some(speeds) => speeds,
                 None => {
                     if !self.holds() {
@@ -146,6 +175,35 @@ impl Worker {
             }
             Ok(Err(refusal)) => self.refuse(sentence(&refusal.to_string())),
             Err(reason) => self.refuse(reason.to_string()),
+        }
+    }
+}
+
+/// What is asked for, and so much upward that a tip that goes level comes back to the height from which it `sank_m`;
+/// `None`: as asked. A tip that is higher than it was is never lowered.
+fn lifted(rates: &JogRates, sank_m: f64) -> Option<JogRates> {
+    let [x, y, z] = rates.velocity_m_s;
+    let speed_m_s = x.hypot(y);
+    let sinks = z == 0.0 && speed_m_s > 0.0 && (SINKS_M..PRESSED_DOWN_M).contains(&sank_m);
+    let up_m_s = (LIFTS_PER_S * sank_m).min(STEEPEST * speed_m_s);
+    sinks.then_some(JogRates { velocity_m_s: [x, y, up_m_s], ..*rates })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_goes_level_and_sinks_is_lifted_a_little_and_nothing_else_is() {
+        let asked = |velocity_m_s| JogRates { velocity_m_s, yaw_rad_s: 0.1 };
+        let forward = asked([0.02, 0.0, 0.0]);
+        assert_eq!(lifted(&forward, 0.002), Some(asked([0.02, 0.0, 0.004])));
+        assert_eq!(lifted(&forward, 0.02), Some(asked([0.02, 0.0, 0.006])), "no steeper than a ramp");
+        for sank_m in [-0.02, 0.0, 5e-4, 0.05, f64::NAN] {
+            assert_eq!(lifted(&forward, sank_m), None, "{sank_m}");
+        }
+        for other in [asked([0.0, 0.0, 0.02]), asked([0.02, 0.0, -0.01]), asked([0.0; 3])] {
+            assert_eq!(lifted(&other, 0.01), None, "{other:?}");
         }
     }
 }

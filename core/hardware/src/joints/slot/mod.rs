@@ -107,7 +107,9 @@ pub(super) struct Slot {
     pub insist: bool,
     /// What its limit of torque is to be; `None`: as it is.
     pub force: Option<Force>,
-    /// How often it was told so.
+    /// Of a limit, this share is left since the servos of its hand got warm; 1: all of it.
+    pub eased: f64,
+    /// How often it was told its limit.
     pub force_tries: u32,
     /// Wait before its answers, s, when it is longer than it needs to be.
     pub slow_answers_s: Option<f64>,
@@ -145,6 +147,7 @@ impl Slot {
             hold_pending: false,
             insist: false,
             force: None,
+            eased: 1.0,
             force_tries: 0,
             slow_answers_s: None,
             reads_singly,
