@@ -17,7 +17,7 @@ use super::connect::{self, ConnectChoice};
 use super::dialogs::{Answer, Question};
 use super::lerobot::LerobotAsk;
 use super::sheet::{Asked, buttons, buttons_with_care, sheet, title};
-use super::unaccepted::{lost_by_closing, sheet_of_unaccepted};
+use super::unaccepted::{TWIN_BEGINS_ANEW, is_twin, lost_by_closing, sheet_of_unaccepted};
 
 /// An open sheet.
 #[derive(Debug)]
@@ -226,6 +226,7 @@ fn close_while_moving(ui: &mut Ui, view: &View) -> Asked {
         ),
         false => ("Close?", "The robot stands by now. It holds where it is, with torque.", "Close"),
     };
+    let held = if is_twin(view) && view.grasp.held.is_none() { TWIN_BEGINS_ANEW } else { held };
     let about = match lost_by_closing(view) {
         Some(lost) => format!("{held} {lost}"),
         None => held.to_owned(),

@@ -2,6 +2,7 @@
 
 use egui::Ui;
 use plumbline_engine::View;
+use plumbline_engine::view::Connection;
 use plumbline_model::listed;
 
 use super::sheet::{Asked, buttons_with_care, title};
@@ -37,15 +38,26 @@ fn are_models_open(view: &View) -> bool {
     })
 }
 
+/// What becomes of the twin.
+pub(super) const TWIN_BEGINS_ANEW: &str =
+    "The twin ends with the program: next time it stands at home, and its toys where they were at first.";
+
+/// Whether what would be left alone is the twin.
+pub(super) fn is_twin(view: &View) -> bool {
+    matches!(view.robot.connection, Connection::Connected { twin: true, .. })
+}
+
 /// What a hand holds, and what becomes of it; `None`: nothing.
 pub(super) fn held(view: &View) -> Option<String> {
     let held = view.grasp.held.as_ref()?;
-    Some(format!(
-        "The {} hand holds the {}: its fingers go on pressing, and nobody looks any more whether it slips. Put it \
-         down first.",
-        held.hand.name(),
-        held.object.to_lowercase()
-    ))
+    let (hand, object) = (held.hand.name(), held.object.to_lowercase());
+    Some(match is_twin(view) {
+        true => format!("The {hand} hand holds the {object}. {TWIN_BEGINS_ANEW}"),
+        false => format!(
+            "The {hand} hand holds the {object}: its fingers go on pressing, and nobody looks any more whether it \
+             slips. Put it down first."
+        ),
+    })
 }
 
 /// The same in sentences; `None`: nothing is lost, and nothing is held.

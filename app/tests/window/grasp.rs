@@ -135,6 +135,12 @@ fn what_is_held_is_said_on_the_robot_too_and_a_hand_that_gets_warm_of_it_is_told
     let on_robot = || WindowSettings { screen: Screen::Robot, ..WindowSettings::default() };
     assert!(says(&Fake::over(view.clone()).window(on_robot()), "holds the tomato, which goes along"));
     assert!(!says(&on_grasp(&Fake::over(view.clone())), "from holding it"));
+    let mut gives_way = view.clone();
+    Arc::make_mut(&mut gives_way.grasp).gives_way_rad = Some(14.0_f64.to_radians());
+    assert!(says(
+        &on_grasp(&Fake::over(gives_way)),
+        "have bent on by 14° since it was grasped: it may slip out"
+    ));
     let (robot, thumb) = (Arc::make_mut(&mut view.robot), joint("r_thumb_x"));
     let warm = |one: &JointView| match one.joint == thumb {
         true => JointView { temperature_c: Some(58.0), ..one.clone() },

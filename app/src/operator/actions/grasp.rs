@@ -37,6 +37,9 @@ pub enum GraspAction {
 
 type Refusal = Option<Cow<'static, str>>;
 
+/// While the arm goes home.
+const GOES_HOME: GraspPhase = GraspPhase::Hand { step: HandStep::Home, paused: false };
+
 impl GraspAction {
     /// All of them, in the palette's order.
     pub const ALL: [Self; 15] = [
@@ -84,6 +87,7 @@ impl GraspAction {
         let under_way = grasp.phase != GraspPhase::Idle;
         let when = |possible: bool, why: &'static str| (!possible).then_some(Cow::Borrowed(why));
         match self {
+            Self::Hand(HandStep::Home) if grasp.phase == GOES_HOME => Some("the arm goes home".into()),
             Self::Hand(HandStep::Home) if under_way => None,
             Self::Plan | Self::Grasp | Self::Hand(_) if under_way => Some("something is under way".into()),
             Self::Plan | Self::Grasp => {

@@ -13,7 +13,7 @@ use super::sentence::{Guidance, say};
 use crate::operator::words::grasp::{
     again, closed, go_on, held_now, holds, made_room, method, object_of, try_of,
 };
-use crate::operator::words::robot::turns_most;
+use crate::operator::words::robot::{turns_most, whole_degrees};
 use crate::operator::words::trials::ask;
 use crate::operator::{Action, GraspAction, RobotAction, Screen, TrialsAction, is_under_way};
 
@@ -78,7 +78,11 @@ fn idle(view: &View) -> Guidance {
             format!(" {}, {} in all.", turns_most(joint), format::degrees(*turn_rad))
         });
         let label = format!("Grasp {} with {by}", plan.object.to_lowercase());
-        let shown = format!("Shown as a ghost.{most} It takes about {} s.", plan.duration.as_secs());
+        let seconds = plan.duration.as_secs();
+        let shown = match plan.method.aligns() {
+            true => format!("Shown as a ghost.{most} It moves for about {seconds} s, and looks in between."),
+            false => format!("Shown as a ghost.{most} It takes about {seconds} s."),
+        };
         let guidance = match in_doubt(view) {
             true => say(format!("{shown} Its places are in doubt: the list at the right says why.")).warn(),
             false => say(shown),
@@ -220,8 +224,14 @@ pub(super) fn in_hand(view: &View, held: &InHand, run: Option<&GraspRun>) -> Gui
         true => "Say whether you see it held; putting it down lowers the arm and opens the hand.",
         false => "Putting it down lowers the arm and opens the hand.",
     };
-    let said = match warm_of_holding(&view.robot, held.hand) {
-        Some(warm) => say(format!("{there} {warm} {then}")).warn(),
+    let gives_way = grasp.gives_way_rad.map(|by_rad| {
+        format!(
+            "Its fingers have bent on by {} since it was grasped: it may slip out.",
+            whole_degrees(by_rad)
+        )
+    });
+    let said = match warm_of_holding(&view.robot, held.hand).or(gives_way) {
+        Some(doubt) => say(format!("{there} {doubt} {then}")).warn(),
         None => say(format!("{there} {then}")),
     };
     said.then("Put it down", Action::Grasp(GraspAction::Hand(HandStep::Place)))

@@ -1,5 +1,7 @@
 //! What to do next with the robot and with the mount of its eyes.
 
+use std::time::Duration;
+
 use plumbline_engine::view::{
     CaptureHint, Connection, JointView, MotionState, Preview, RobotView, SourceStatus, StepState, TourWaits,
 };
@@ -14,6 +16,8 @@ use crate::operator::words::mount;
 use crate::operator::words::robot::{BY_STOP, is_close, is_limp, move_sentence, moved_name, silent_together};
 use crate::operator::{Action, MountAction, RobotAction, Screen};
 
+/// A move that is shorter than this is none.
+const NO_WAY: Duration = Duration::from_millis(50);
 /// Less than that beyond a limit nobody sees, rad.
 const BEYOND_RAD: f64 = 0.005;
 
@@ -131,7 +135,8 @@ fn moving(robot: &RobotView) -> Option<Guidance> {
     }
     let far = fraction.map_or_else(String::new, |part| format!(", {}", format::percent(part)));
     let left = remaining.map_or_else(String::new, |left| format!(", {}", format::time_left(left)));
-    Some(say(format!("Moving {what}{far}{left}. Esc or space stops.")))
+    let moving = if what == "jogging" { "Jogging".to_owned() } else { format!("Moving {what}") };
+    Some(say(format!("{moving}{far}{left}. Esc or space stops.")))
 }
 
 pub(super) fn robot(view: &View) -> Guidance {
@@ -144,6 +149,10 @@ pub(super) fn robot(view: &View) -> Guidance {
         |joint: JointIndex| robot.joints.iter().any(|one| one.joint == joint && one.problem.is_none());
     if let Some(guidance) = limp(robot).or_else(|| limp_in_part(robot, has_no_problem)) {
         return guidance;
+    }
+    // Nothing moves before they are heard.
+    if let Some(silent) = silent_together(robot) {
+        return say(silent).warn();
     }
     if let Some(preview) = &robot.preview {
         return shown(preview, view);
@@ -197,6 +206,9 @@ fn shown(preview: &Preview, view: &View) -> Guidance {
         return say(format!("Shown as a ghost, and not made: {why}."))
             .warn()
             .then("Go to Grasp", Action::Go(Screen::Grasp));
+    }
+    if preview.duration < NO_WAY && preview.path.is_ok() {
+        return say(format!("Shown as a ghost: {}. The joints stand there already.", preview.title));
     }
     let guidance = say(move_sentence(preview)).then(moved_name(preview), Action::Robot(RobotAction::Move));
     if is_close(preview) { guidance.warn() } else { guidance }

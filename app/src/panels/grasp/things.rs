@@ -123,7 +123,7 @@ fn seen(view: &View) -> (Vec<&str>, Vec<&str>) {
 pub fn seen_but_not_held(view: &View) -> Option<String> {
     let (_, not_held) = seen(view);
     (!not_held.is_empty() && !things(view).is_empty())
-        .then(|| format!("Not held by these hands: {}.", plumbline_model::listed(&not_held).to_lowercase()))
+        .then(|| format!("These hands cannot hold: {}.", plumbline_model::listed(&not_held).to_lowercase()))
 }
 
 fn place_m(object: &ObjectView) -> Option<Point3<f64>> {

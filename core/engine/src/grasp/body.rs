@@ -13,6 +13,7 @@ use plumbline_model::robot::collision::{Allowance, Body as Solid, CollisionModel
 use plumbline_model::robot::{JointIndex, Posture, Rig};
 
 use super::heard::{are_merely_late, are_newer, known, unknown};
+use super::leg::Leg;
 use super::sights::Sights;
 use super::tracks::LedTracks;
 use crate::robot::{GivenUp, LeadAnswer, LeadOrder, Leader, Reins};
@@ -89,6 +90,8 @@ pub struct LedBody<'a> {
     given: Vec<Option<Instant>>,
     /// Where what the joints do is kept, if it is.
     tracks: Option<LedTracks>,
+    /// What it is told to do just now, if that is told.
+    leg: Option<Leg>,
 }
 
 impl<'a> LedBody<'a> {
@@ -118,6 +121,7 @@ impl<'a> LedBody<'a> {
             may_touch: false,
             given: vec![],
             tracks: None,
+            leg: None,
         }
     }
 
@@ -125,6 +129,13 @@ impl<'a> LedBody<'a> {
     pub fn keep_tracks(&mut self, tracks: Tracks) -> LedTracks {
         let tracks = LedTracks::begin(tracks, &self.ropes, self.began);
         self.tracks.insert(tracks).clone()
+    }
+
+    /// What follows is told as it goes on.
+    pub fn begin_leg(&mut self, doing: &'static str, share: [f64; 2]) {
+        let leg = Leg::new(doing, share);
+        leg.report(self.context);
+        self.leg = Some(leg);
     }
 
     /// For one hand of the robot, which acts before its fingers are sent anywhere.
@@ -189,6 +200,9 @@ impl<'a> LedBody<'a> {
         loop {
             if let Some(tracks) = &self.tracks {
                 tracks.take();
+            }
+            if let Some(leg) = &self.leg {
+                leg.report(self.context);
             }
             if let Some(answer) = self.ropes.leader.answer(ASKED_EVERY)? {
                 return Ok(answer);
@@ -272,6 +286,9 @@ impl Body for LedBody<'_> {
     fn follow(&mut self, way: &[Posture], speed_rad_s: f64) -> Result<(), Halt> {
         self.state_to_go_on()?;
         let from = self.commanded()?;
+        if let Some(leg) = &mut self.leg {
+            leg.sets_out(&from, way, speed_rad_s);
+        }
         let way = self.turning(way)?;
         let goals = way.last().cloned().unwrap_or_default();
         if goals.is_empty() {

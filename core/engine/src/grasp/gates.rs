@@ -73,7 +73,7 @@ fn of_any(around: &GraspAround, hands: &[Hand]) -> Vec<Gate> {
     let said = |(i, gate): (usize, &Gate)| {
         let unfit = all.iter().map(|gates| &gates[i]).find(|gate| gate.state == GateState::Shut);
         match unfit {
-            Some(unfit) => doubtful(gate.of, format!("{} The other hand grasps.", unfit.text)),
+            Some(unfit) => doubtful(gate.of, format!("{} Else the other hand grasps.", unfit.text)),
             None => gate.clone(),
         }
     };
@@ -401,6 +401,6 @@ mod tests {
         assert!(shut(&of_any(&neither, &Hand::BOTH)).is_some());
         let unfit = of_any(&around(0.9, 31.0), &Hand::BOTH);
         assert!(shut(&unfit).is_none());
-        assert!(unfit.iter().any(|gate| gate.text.ends_with("The other hand grasps.")), "{unfit:?}");
+        assert!(unfit.iter().any(|gate| gate.text.ends_with("Else the other hand grasps.")), "{unfit:?}");
     }
 }

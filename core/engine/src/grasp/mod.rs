@@ -14,6 +14,7 @@ pub(crate) mod gates;
 mod heard;
 mod held;
 mod keeping;
+mod leg;
 mod method;
 mod pointing;
 mod progress;

@@ -129,6 +129,12 @@ impl<'a> Watcher<'a> {
         [pixel(Eye::Left, in_left), pixel(Eye::Right, in_right)]
     }
 
+    /// How many steps are behind it, and what it does.
+    fn tell(&self, step: Step, doing: &str) {
+        let place = Step::ALL.iter().position(|other| *other == step).unwrap_or_default();
+        self.context.report(place as f64 / Step::ALL.len() as f64, doing);
+    }
+
     /// Keeps something; what cannot be kept ends the attempt.
     fn keep(&mut self, keep: impl FnOnce(&Keeping) -> Result<(), KeepingError>) {
         if let Some(keeping) = &self.keeping
@@ -169,8 +175,7 @@ impl Watch for Watcher<'_> {
                 }
             }
         });
-        let place = Step::ALL.iter().position(|other| *other == step).unwrap_or_default();
-        self.context.report(place as f64 / Step::ALL.len() as f64, &step.title().to_lowercase());
+        self.tell(step, &step.title().to_lowercase());
     }
 
     fn saw(&mut self, step: Step, sight: &Sight, seen: &[Seen]) {
@@ -181,7 +186,7 @@ impl Watch for Watcher<'_> {
         if !seen.is_empty() || step != Step::Align {
             self.progress.change(|run| run.seen = seen.to_vec());
         }
-        self.context.report(0.0, &step.title().to_lowercase());
+        self.tell(step, &step.title().to_lowercase());
     }
 
     fn planned(&mut self, plan: &GraspPlan) {
@@ -196,7 +201,7 @@ impl Watch for Watcher<'_> {
             run.hand_px = hand_px;
             run.iterations.push(iteration.clone());
         });
-        self.context.report(0.5, "align");
+        self.tell(Step::Align, "align");
     }
 
     fn about_to(&mut self, record: &Record) {
@@ -207,7 +212,7 @@ impl Watch for Watcher<'_> {
     fn holds_between(&mut self, done: Step, next: Step) -> bool {
         let holds = self.stops.hold_between(BetweenSteps { done, next }, &self.progress, &self.reins);
         if holds {
-            self.context.report(0.5, &format!("holds before {}", next.title().to_lowercase()));
+            self.tell(next, &format!("holds before {}", next.title().to_lowercase()));
         }
         holds
     }

@@ -8,6 +8,7 @@ use plumbline_grasp::things::Thing;
 use super::area::area;
 use super::around::GraspAround;
 use super::gates::{full_hand, gates, may_hold};
+use super::held::HeldWatch;
 use super::method::methods;
 use super::view::{Gate, GraspPhase, GraspView, HandChoice, HandWaits, InHand};
 use super::waits::{Waits, stands_in_view};
@@ -32,6 +33,7 @@ impl GraspWorkflow {
             target: self.target.clone(),
             stops_after_each: self.stops.is_on(),
             held: self.in_hand(),
+            gives_way_rad: self.held.as_ref().and_then(HeldWatch::gives_way_rad),
             hand_waits: self.waits(around),
             may_hold: self.waits.as_ref().filter(|_| self.held.is_none()).and_then(Waits::may_hold),
             not_made: self.not_made.clone(),
@@ -64,6 +66,11 @@ impl GraspWorkflow {
     /// What is looked at before anything moves; what is in a hand is among it.
     pub(super) fn gates(&self, around: &GraspAround, choice: HandChoice) -> Vec<Gate> {
         let full = self.in_hand();
+        // A hand that holds something is the one that has to be fit: it puts that down first.
+        let choice = match full.as_ref().map(|held| HandChoice::from(held.hand)) {
+            Some(hand) if choice == HandChoice::Auto && self.method.hands(hand).is_ok() => hand,
+            _ => choice,
+        };
         let area = self.stands_at_m(around).and_then(|at_m| area(around, self.method, at_m));
         let gates = gates(around, choice, self.method).into_iter();
         let may_hold = self.waits(around).filter(|_| full.is_none()).and_then(may_hold);

@@ -20,6 +20,8 @@ const CLEAR_M: f64 = 0.15;
 const GIVE_M: [f64; 3] = [0.34, 0.16, 0.26];
 /// Headings in which they are, rad, of a right hand; the first that the arm reaches.
 const GIVE_HEADINGS_RAD: [f64; 5] = [0.0, 0.5, 1.0, -0.5, 1.5];
+/// A step that is one way.
+const WHOLE: [f64; 2] = [0.1, 1.0];
 /// Fingers that stand on the table are free so much higher, m.
 const FREES_M: f64 = 0.012;
 /// What is put down is let go this much above where it was taken, m.
@@ -74,12 +76,11 @@ pub struct HandWork {
 impl HandWork {
     /// Makes the step; `Err` inside: why not, the arm holds.
     pub fn carry_out(&self, context: &dyn JobContext) -> Result<Result<(), NoStep>, JobError> {
-        context.report(0.1, "moving");
         let arm = PalmArm::new(&self.rests_on.model, &self.arm).map_err(JobError::told)?;
         let planner = GraspPlanner::new(arm);
         let body = LedBody::new(self.rests_on.model.rig().clone(), self.ropes.clone(), context);
         let body = body.of_arm(&self.arm);
-        let mut hand = Hand { planner: &planner, body, context };
+        let mut hand = Hand { planner: &planner, body };
         Ok(match self.step {
             HandStep::Open => hand.open(),
             HandStep::Close => hand.close(),
@@ -94,11 +95,11 @@ impl HandWork {
 struct Hand<'a> {
     planner: &'a GraspPlanner,
     body: LedBody<'a>,
-    context: &'a dyn JobContext,
 }
 
 impl Hand<'_> {
     fn open(&mut self) -> Result<(), NoStep> {
+        self.body.begin_leg("opening", WHOLE);
         let from = self.body.commanded()?;
         self.unfold(&self.planner.open(&from))
     }
@@ -115,6 +116,7 @@ impl Hand<'_> {
     }
 
     fn close(&mut self) -> Result<(), NoStep> {
+        self.body.begin_leg("closing", WHOLE);
         let from = self.body.commanded()?;
         let closed = self.planner.closed(&from);
         self.body.follow(&[self.planner.thumb_closed(&from)], SPEED_RAD_S)?;
@@ -122,6 +124,7 @@ impl Hand<'_> {
     }
 
     fn lift(&mut self) -> Result<(), NoStep> {
+        self.body.begin_leg("lifting", WHOLE);
         let from = self.body.commanded()?;
         let way = self.planner.vertical(self.planner.arm().heading_rad(&from), &from, GraspPlanner::LIFT_M);
         if way.is_empty() {
@@ -132,6 +135,7 @@ impl Hand<'_> {
     }
 
     fn place(&mut self, closed_at_m: Option<[f64; 3]>) -> Result<(), NoStep> {
+        self.body.begin_leg("lowering", [0.1, 0.5]);
         let from = self.body.commanded()?;
         let [x_m, y_m, z_m] = closed_at_m.ok_or(NoStep::NotGrasped)?;
         let closes_m = z_m + ABOVE_SUPPORT_M;
@@ -143,7 +147,7 @@ impl Hand<'_> {
             self.body.let_fingers_touch()?;
             self.body.follow(&way, SPEED_RAD_S)?;
         }
-        self.context.report(0.5, "letting go");
+        self.body.begin_leg("letting go", [0.5, 0.8]);
         self.body.let_fingers_touch()?;
         let mut open = self.planner.open(&low);
         match self.unfold(&open) {
@@ -157,7 +161,7 @@ impl Hand<'_> {
             done => done?,
         }
         self.body.wait(0.3)?;
-        self.context.report(0.8, "lifting the open hand");
+        self.body.begin_leg("lifting the open hand", [0.8, 1.0]);
         self.body.let_fingers_touch()?;
         let heading_rad = self.planner.arm().heading_rad(&open);
         let up = self.planner.vertical(heading_rad, &open, GraspPlanner::LIFT_M);
@@ -176,7 +180,7 @@ impl Hand<'_> {
     /// It holds on until somebody has it: the hand opens by a step of its own.
     fn give(&mut self, left: bool) -> Result<(), NoStep> {
         self.clear_the_table()?;
-        self.context.report(0.4, "holding it out");
+        self.body.begin_leg("holding it out", [0.4, 1.0]);
         let from = self.body.commanded()?;
         let side = if left { 1.0 } else { -1.0 };
         let table_m = self.planner.arm().rig().table.height_m;
@@ -189,7 +193,7 @@ impl Hand<'_> {
 
     fn home(&mut self) -> Result<(), NoStep> {
         self.clear_the_table()?;
-        self.context.report(0.4, "going home");
+        self.body.begin_leg("going home", [0.4, 1.0]);
         let from = self.body.commanded()?;
         let arm = self.planner.arm();
         let home = from.with(arm.joints(), &arm.rig().home().of(arm.joints()));
@@ -198,6 +202,7 @@ impl Hand<'_> {
 
     /// Up from between things, before it goes anywhere.
     fn clear_the_table(&mut self) -> Result<(), NoStep> {
+        self.body.begin_leg("lifting", [0.1, 0.4]);
         let from = self.body.commanded()?;
         let height_m = self.planner.arm().palm(&from).coords.z;
         let missing_m = self.planner.arm().rig().table.height_m + CLEAR_M - height_m;

@@ -35,6 +35,8 @@ pub struct GraspView {
     pub stops_after_each: bool,
     /// What was grasped and is in a hand still.
     pub held: Option<InHand>,
+    /// How far its fingers have bent on around it since it was grasped, where that is so much that it may slip out, rad.
+    pub gives_way_rad: Option<f64>,
     /// How the hand was left, where that matters to what is done next; `None`: it does not, or it was moved since.
     pub hand_waits: Option<HandWaits>,
     /// Which hand may hold something, where it is not known that it does.

@@ -3,6 +3,11 @@
 //! A servo that stands and presses turns all that it draws into heat, which grows with the square of its torque: half
 //! the force is a quarter of the heat. Fingers and thumb of a hand are eased alike, by the warmest of them, because
 //! what presses against less than before is pushed out.
+//!
+//! (Physics, `core/grasp/tests/tolerance.rs`, ten seconds as grasped and ten eased, 22 places: of usual tomatoes none is
+//! lost with 0.7 or 0.5 of the force; of those with 0.72 of the friction, 1.3 of the mass and 8 % larger 11 are still held
+//! with 0.7, 2 with 0.5, and 20 with all of it. So force is taken off late, and no more than keeps the hand from
+//! being too hot.)
 
 use plumbline_model::robot::Gate;
 
@@ -14,10 +19,11 @@ const LEFT_WHEN_HOT: f64 = 0.5;
 /// Force is taken off in tenths: a degree to and fro changes nothing.
 const STEPS: f64 = 10.0;
 
-/// The share of the force of a hand that is left at the temperature of its warmest servo, °C: all of it up to where
-/// the operator is warned.
+/// The share of the force of a hand that is left at the temperature of its warmest servo, °C: all of it up to the middle
+/// between where the operator is warned and where nothing moves any more.
 fn left_at(warmest_c: f64, gate: &Gate) -> f64 {
-    let warmed = ((warmest_c - gate.warm_c) / (gate.hot_c - gate.warm_c)).clamp(0.0, 1.0);
+    let from_c = 0.5 * (gate.warm_c + gate.hot_c);
+    let warmed = ((warmest_c - from_c) / (gate.hot_c - from_c)).clamp(0.0, 1.0);
     let left = 1.0 - (1.0 - LEFT_WHEN_HOT) * warmed;
     (left * STEPS).ceil() / STEPS
 }
@@ -57,7 +63,7 @@ mod tests {
     fn a_warm_hand_presses_less_and_a_hot_one_half() {
         let gate = Rig::built_in("nico").expect("comes with the program").gate;
         assert_eq!((gate.warm_c, gate.hot_c), (55.0, 70.0));
-        let left = [20.0, 55.0, 56.0, 58.0, 62.0, 67.0, 70.0, 90.0].map(|warm_c| left_at(warm_c, &gate));
-        assert_eq!(left, [1.0, 1.0, 1.0, 0.9, 0.8, 0.6, 0.5, 0.5]);
+        let left = [20.0, 55.0, 62.0, 64.0, 66.0, 68.0, 70.0, 90.0].map(|warm_c| left_at(warm_c, &gate));
+        assert_eq!(left, [1.0, 1.0, 1.0, 0.9, 0.8, 0.7, 0.5, 0.5]);
     }
 }

@@ -11,7 +11,7 @@ use crate::grasp::progress::Progress;
 use crate::grasp::refusal::Refusal;
 use crate::grasp::steps::HandWork;
 use crate::grasp::stepwise::StopAfterEach;
-use crate::grasp::view::Need;
+use crate::grasp::view::{HandChoice, Need};
 use crate::grasp::work::{Context, GraspWork};
 use crate::ground::jobs::JobId;
 use crate::robot::{Leader, Reins, RobotControl};
@@ -28,7 +28,11 @@ impl GraspWorkflow {
             What::Hand(step) => self.hand_for(step, around),
             What::Plan | What::Grasp => self.hand(),
         };
-        let choice = if matches!(what, What::Hand(_)) { hand.into() } else { self.choice };
+        let choice = match what {
+            What::Hand(_) => hand.into(),
+            What::Plan => self.choice,
+            What::Grasp => self.planned_hand(),
+        };
         let needed = self.gates(around, choice);
         // A step of the hand needs neither eyes nor a method.
         let needed: Vec<_> = needed
@@ -61,7 +65,7 @@ impl GraspWorkflow {
                 closed_at_m: self.closed_at_m,
             }))),
             What::Plan | What::Grasp => {
-                let attempt = Box::new(self.attempt(ropes, around, context));
+                let attempt = Box::new(self.attempt(ropes, choice, around, context));
                 context.start(match what {
                     What::Plan => GraspWork::Plan(attempt),
                     _ => GraspWork::Grasp(attempt),
@@ -73,7 +77,13 @@ impl GraspWorkflow {
     }
 
     /// As it was chosen; what was planned for is what is grasped.
-    fn attempt(&mut self, ropes: Ropes, around: &GraspAround, context: &Context<'_>) -> Attempt {
+    fn attempt(
+        &mut self,
+        ropes: Ropes,
+        choice: HandChoice,
+        around: &GraspAround,
+        context: &Context<'_>,
+    ) -> Attempt {
         let target = match &self.plan {
             Some(plan) => GraspTarget { class: Some(plan.object.clone()), near_m: Some(plan.at_m) },
             None => self.target.clone(),
@@ -84,7 +94,7 @@ impl GraspWorkflow {
         let stops = self.stops_in(around);
         Attempt {
             rests_on: around.rests_on(),
-            hand: able(around, self.choice, self.method),
+            hand: able(around, choice, self.method),
             method: self.method,
             target,
             ropes,
@@ -93,6 +103,11 @@ impl GraspWorkflow {
             progress,
             stops,
         }
+    }
+
+    /// The hand whose way is shown, or the chosen one: what was shown is what moves.
+    pub(super) fn planned_hand(&self) -> HandChoice {
+        self.plan.as_ref().map_or(self.choice, |plan| plan.hand.into())
     }
 
     /// An experiment goes on by itself, and its attempts are compared: they hold nowhere.

@@ -82,8 +82,8 @@ pub struct GraspWorkflow {
 fn broken_off(attempt: &AttemptView) -> Option<String> {
     let reached = attempt.reached.filter(|_| attempt.outcome.is_none())?;
     Some(format!(
-        "The program ended while it grasped the {} ({}, {}). The arm holds as its servos were told last: look what \
-         is in the hand, open it if you must, then press Arm home, on the screen Grasp.",
+        "The program ended while it grasped the {} ({}, {}). The twin begins anew at home; a real arm holds as its \
+         servos were told last: look what is in the hand, open it if you must, then press Arm home, on the screen Grasp.",
         attempt.object.to_lowercase(),
         attempt.method.name().to_uppercase(),
         reached.title().to_lowercase()
@@ -245,7 +245,7 @@ mod old_plan_tests {
         let mut room = GraspWorkflow::new(Path::new("nowhere"));
         let plan = PlannedGrasp {
             method: Method::M5,
-            hand: Hand::Right,
+            hand: Hand::Left,
             model: "as described".to_owned(),
             object: "Tomato".to_owned(),
             at_m: [0.3, -0.1],
@@ -260,6 +260,8 @@ mod old_plan_tests {
         (room.plan, room.planned_with) = (Some(Arc::new(plan)), Some(around.model.clone()));
         let moment = Moment { now: Instant::now(), skipped: Skipped::default() };
         assert!(room.view(&around, &moment).plan.is_some());
+        // What was shown is what moves, whichever hand would be chosen by now.
+        assert_eq!((room.choice, room.planned_hand()), (HandChoice::Auto, HandChoice::Left));
         // The eyes are brought back, or an effect is added: the robot is known otherwise.
         around.model = Arc::new(RobotModel::nominal(rig));
         assert!(room.view(&around, &moment).plan.is_none());

@@ -19,10 +19,11 @@ const HANGS_RAD: f64 = 0.06;
 const SINKS_M: f64 = 1e-3;
 /// … nor one that something presses down, m.
 const PRESSED_DOWN_M: f64 = 0.04;
-/// What it sank is taken off in half a second, 1/s …
-const LIFTS_PER_S: f64 = 2.0;
+/// What it sank is taken off in a second, 1/s: faster, it is higher than before once the joints have come after their
+/// goals (by 5 mm of a way of 40 with a toy in the hand, physics) …
+const LIFTS_PER_S: f64 = 1.0;
 /// … and it rises no steeper than this share of its way.
-const STEEPEST: f64 = 0.3;
+const STEEPEST: f64 = 0.2;
 /// Goals that stand still are followed for so long: two cycles of the bus.
 const STILL_FOR: Duration = Duration::from_millis(32);
 
@@ -197,8 +198,8 @@ mod tests {
     fn what_goes_level_and_sinks_is_lifted_a_little_and_nothing_else_is() {
         let asked = |velocity_m_s| JogRates { velocity_m_s, yaw_rad_s: 0.1 };
         let forward = asked([0.02, 0.0, 0.0]);
-        assert_eq!(lifted(&forward, 0.002), Some(asked([0.02, 0.0, 0.004])));
-        assert_eq!(lifted(&forward, 0.02), Some(asked([0.02, 0.0, 0.006])), "no steeper than a ramp");
+        assert_eq!(lifted(&forward, 0.002), Some(asked([0.02, 0.0, 0.002])));
+        assert_eq!(lifted(&forward, 0.02), Some(asked([0.02, 0.0, 0.004])), "no steeper than a ramp");
         for sank_m in [-0.02, 0.0, 5e-4, 0.05, f64::NAN] {
             assert_eq!(lifted(&forward, sank_m), None, "{sank_m}");
         }
