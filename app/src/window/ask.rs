@@ -226,10 +226,18 @@ fn close_while_moving(ui: &mut Ui, view: &View) -> Asked {
         ),
         false => ("Close?", "The robot stands by now. It holds where it is, with torque.", "Close"),
     };
-    let held = if is_twin(view) && view.grasp.held.is_none() { TWIN_BEGINS_ANEW } else { held };
+    let held = match is_twin(view) {
+        false => held.to_owned(),
+        true => {
+            let stops = if super::status_line::moves(view) { "It is stopped first." } else { "" };
+            // What the hand holds tells the rest.
+            let then = if view.grasp.held.is_some() { "" } else { TWIN_BEGINS_ANEW };
+            format!("{stops} {then}").trim().to_owned()
+        }
+    };
     let about = match lost_by_closing(view) {
         Some(lost) => format!("{held} {lost}"),
-        None => held.to_owned(),
+        None => held,
     };
     title(ui, asks, &about);
     match buttons_with_care(ui, closes) {

@@ -147,7 +147,7 @@ fn what_is_held_is_said_on_the_robot_too_and_a_hand_that_gets_warm_of_it_is_told
         false => one.clone(),
     };
     robot.joints = robot.joints.iter().map(warm).collect();
-    assert!(says(&on_grasp(&Fake::over(view)), "is at 58 °C from holding it, and lets go at 70 °C"));
+    assert!(says(&on_grasp(&Fake::over(view)), "is at 58 °C from holding it, and must not come to 70 °C"));
 }
 
 /// A step that the arm would refuse is not offered: what is limp is held first.

@@ -97,6 +97,11 @@ impl HoldWatch {
         self.grip.joints()
     }
 
+    /// How far each finger is kept from closing around nothing, rad.
+    pub fn open_rad(&self, servos: &[ServoState]) -> Vec<f64> {
+        self.grip.open_rad(servos)
+    }
+
     /// Whether the hand felt empty at last, not yet for so long that it is sure.
     pub fn doubts(&self) -> bool {
         self.empty_since_s.is_some()

@@ -230,14 +230,15 @@ pub(super) fn in_hand(view: &View, held: &InHand, run: Option<&GraspRun>) -> Gui
             whole_degrees(by_rad)
         )
     });
-    let said = match warm_of_holding(&view.robot, held.hand).or(gives_way) {
-        Some(doubt) => say(format!("{there} {doubt} {then}")).warn(),
-        None => say(format!("{there} {then}")),
+    let doubts: Vec<String> = gives_way.into_iter().chain(warm_of_holding(&view.robot, held.hand)).collect();
+    let said = match doubts.is_empty() {
+        true => say(format!("{there} {then}")),
+        false => say(format!("{there} {} {then}", doubts.join(" "))).warn(),
     };
     said.then("Put it down", Action::Grasp(GraspAction::Hand(HandStep::Place)))
 }
 
-/// That a hand gets warm of what it holds; pressed on and on it would let go.
+/// That a hand gets warm of what it holds.
 fn warm_of_holding(robot: &RobotView, hand: GraspHand) -> Option<String> {
     let rig = robot.rig.as_ref()?;
     let fingers = &rig.arm(hand.name())?.hand;
@@ -246,7 +247,7 @@ fn warm_of_holding(robot: &RobotView, hand: GraspHand) -> Option<String> {
     let (warmest_c, joint) = warm.max_by(|a, b| a.0.total_cmp(&b.0))?;
     (warmest_c >= rig.gate.warm_c).then(|| {
         let (at_c, hot_c) = (format::fixed(warmest_c, 0), format::fixed(rig.gate.hot_c, 0));
-        format!("{} is at {at_c} °C from holding it, and lets go at {hot_c} °C.", joint.title)
+        format!("{} is at {at_c} °C from holding it, and must not come to {hot_c} °C.", joint.title)
     })
 }
 

@@ -1,7 +1,5 @@
 //! What to do next with the robot and with the mount of its eyes.
 
-use std::time::Duration;
-
 use plumbline_engine::view::{
     CaptureHint, Connection, JointView, MotionState, Preview, RobotView, SourceStatus, StepState, TourWaits,
 };
@@ -16,8 +14,8 @@ use crate::operator::words::mount;
 use crate::operator::words::robot::{BY_STOP, is_close, is_limp, move_sentence, moved_name, silent_together};
 use crate::operator::{Action, MountAction, RobotAction, Screen};
 
-/// A move that is shorter than this is none.
-const NO_WAY: Duration = Duration::from_millis(50);
+/// A move that turns no joint by more than this is none, rad.
+const NO_WAY_RAD: f64 = 2e-3;
 /// Less than that beyond a limit nobody sees, rad.
 const BEYOND_RAD: f64 = 0.005;
 
@@ -48,9 +46,6 @@ fn silent(robot: &RobotView) -> Option<Guidance> {
 
 /// A joint that has to be taken hold of anew, or is not known.
 fn joint_trouble(robot: &RobotView) -> Option<Guidance> {
-    if let Some(silent) = silent_together(robot) {
-        return Some(say(silent).warn());
-    }
     let troubled = |joint: &&plumbline_engine::view::JointView| joint.let_go || joint.no_force;
     let joint = robot
         .joints
@@ -207,7 +202,8 @@ fn shown(preview: &Preview, view: &View) -> Guidance {
             .warn()
             .then("Go to Grasp", Action::Go(Screen::Grasp));
     }
-    if preview.duration < NO_WAY && preview.path.is_ok() {
+    let turns = preview.largest_turn.as_ref().is_some_and(|(_, by_rad)| by_rad.abs() > NO_WAY_RAD);
+    if !turns && preview.path.is_ok() {
         return say(format!("Shown as a ghost: {}. The joints stand there already.", preview.title));
     }
     let guidance = say(move_sentence(preview)).then(moved_name(preview), Action::Robot(RobotAction::Move));

@@ -201,14 +201,15 @@ impl<'a> LedBody<'a> {
             if let Some(tracks) = &self.tracks {
                 tracks.take();
             }
-            if let Some(leg) = &self.leg {
-                leg.report(self.context);
-            }
             if let Some(answer) = self.ropes.leader.answer(ASKED_EVERY)? {
                 return Ok(answer);
             }
             if !self.ropes.reins.is_tight() && !self.ropes.leader.waits() {
                 left = left.saturating_sub(ASKED_EVERY);
+                if let Some(leg) = &self.leg {
+                    leg.goes_on(ASKED_EVERY);
+                    leg.report(self.context);
+                }
             }
             if left.is_zero() {
                 return Err(self.call_off(Halt::Lost("the arm does not come to its goal".to_owned())));

@@ -4,11 +4,12 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
+use plumbline_grasp::body::grip_force;
 use plumbline_grasp::{Grip, Hand, HoldWatch, ServoState};
-use plumbline_model::robot::Rig;
+use plumbline_model::robot::{JointIndex, Rig};
 
 use super::view::{AttemptView, SinceHeld};
-use crate::robot::view::{MotionState, RobotView};
+use crate::robot::view::{JointView, MotionState, RobotView};
 
 /// A hand whose joints are sent so much farther open than they were, the mean, was told to open, rad. The goals
 /// of a grip go on with its fingers, a little back and forth around what is held and far on around nothing.
@@ -17,6 +18,9 @@ const OPENED_RAD: f64 = 0.3;
 /// Fingers that have bent on by this since it was grasped are about to lose it, rad. (On the twin they bend on by 5° in the
 /// first two minutes around a tomato, and by 14° in six.)
 const GIVES_WAY_RAD: f64 = 0.18;
+
+/// No hand presses with less than this share of what it was told.
+const LEAST_LEFT: f64 = 0.3;
 
 /// A thing in a hand.
 #[derive(Clone, Debug)]
@@ -34,9 +38,11 @@ pub struct HeldWatch {
     since: Instant,
     /// How far its joints were sent toward the closed hand at most, the mean, rad.
     closed_rad: Option<f64>,
-    /// How far its joints were bent when it was felt first, rad.
-    bent_rad: Option<Vec<f64>>,
-    /// How much farther one of them is bent by now, rad.
+    /// The share of its torque with which each joint was told to press.
+    told: Vec<(JointIndex, f64)>,
+    /// How far its fingers were kept open when they were felt first, rad.
+    open_rad: Option<Vec<f64>>,
+    /// How much farther one of them is closed by now, rad.
     gave_rad: f64,
     /// It was asked to leave the hand.
     leaves: bool,
@@ -53,7 +59,13 @@ impl HeldWatch {
             hold: HoldWatch::new(Grip::of_rig(rig, attempt.hand)?),
             since: now,
             closed_rad: None,
-            bent_rad: None,
+            told: rig
+                .arm(attempt.hand.name())?
+                .hand
+                .iter()
+                .map(|joint| (*joint, grip_force(rig, *joint)))
+                .collect(),
+            open_rad: None,
             gave_rad: 0.0,
             leaves: false,
         };
@@ -89,7 +101,7 @@ impl HeldWatch {
         // While the arm moves, what it carries presses now more and now less.
         let servos = self.servos(robot).filter(|_| !matches!(robot.motion, MotionState::Moving { .. }));
         if let Some(servos) = &servos {
-            self.note_bent(servos);
+            self.note_open(servos);
         }
         let now_s = now.saturating_duration_since(self.since).as_secs_f64();
         match self.hold.feel(servos.as_deref(), now_s) {
@@ -104,10 +116,17 @@ impl HeldWatch {
         (self.gave_rad >= GIVES_WAY_RAD).then(|| self.gave_rad.to_degrees().round().to_radians())
     }
 
-    fn note_bent(&mut self, servos: &[ServoState]) {
-        let bent_rad: Vec<f64> = servos.iter().map(|servo| servo.angle_rad.abs()).collect();
-        let first_rad = self.bent_rad.get_or_insert_with(|| bent_rad.clone());
-        self.gave_rad = bent_rad.iter().zip(first_rad).map(|(now, first)| now - *first).fold(0.0, f64::max);
+    fn note_open(&mut self, servos: &[ServoState]) {
+        let open_rad = self.hold.open_rad(servos);
+        let first_rad = self.open_rad.get_or_insert_with(|| open_rad.clone());
+        self.gave_rad = open_rad.iter().zip(first_rad).map(|(now, first)| *first - now).fold(0.0, f64::max);
+    }
+
+    /// The share of what a joint was told to press with that it still presses with: a hand that got warm presses less.
+    fn left(&self, view: &JointView) -> f64 {
+        let told = self.told.iter().find(|(joint, _)| *joint == view.joint);
+        let left = told.zip(view.force).map_or(1.0, |((_, told), force)| force / told);
+        left.clamp(LEAST_LEFT, 1.0)
     }
 
     /// Whether a joint of the hand was let go limp.
@@ -131,11 +150,13 @@ impl HeldWatch {
     fn servos(&self, robot: &RobotView) -> Option<Vec<ServoState>> {
         let of = |joint| {
             let view = robot.joints.iter().find(|view| view.joint == joint)?;
+            // What a hand that presses less holds presses less on it.
+            let left = self.left(view);
             Some(ServoState {
                 joint,
                 angle_rad: view.angle_rad?,
-                load: view.load,
-                current_a: view.current_a,
+                load: view.load.map(|load| load / left),
+                current_a: view.current_a.map(|current_a| current_a / left),
                 temperature_c: view.temperature_c,
             })
         };
@@ -150,7 +171,7 @@ pub(super) mod tests {
     use plumbline_model::robot::Limits;
 
     use super::*;
-    use crate::robot::view::{Connection, JointView};
+    use crate::robot::view::Connection;
 
     const HOLDS: MotionState = MotionState::Holding { why: None };
 
@@ -255,13 +276,46 @@ pub(super) mod tests {
         let mut held = watch(began);
         let bent = |by_rad: f64| {
             let robot = robot(0.2, 1.8, HOLDS);
-            let bend = |joint: &JointView| JointView { angle_rad: Some(1.0 + by_rad), ..joint.clone() };
+            let bends_up = |joint| {
+                let limits = rig().limits(joint);
+                limits.upper_rad > -limits.lower_rad
+            };
+            let farther = |joint: &JointView| match bends_up(joint.joint) {
+                true => 1.0 + by_rad,
+                false => -1.0 - by_rad,
+            };
+            let bend = |joint: &JointView| JointView { angle_rad: Some(farther(joint)), ..joint.clone() };
             RobotView { joints: robot.joints.iter().map(bend).collect(), ..robot }
         };
         for (by_rad, told_deg) in [(0.0, None), (0.1, None), (0.2, Some(11.0)), (0.05, None)] {
             assert_eq!(held.look(&bent(by_rad), began), SinceHeld::Held);
             let told = held.gives_way_rad().map(|rad| rad.to_degrees().round());
             assert_eq!(told, told_deg, "bent on by {by_rad}");
+        }
+    }
+
+    /// Its servos then say less of the same thing.
+    #[test]
+    fn a_hand_that_got_warm_and_presses_less_has_not_lost_what_it_holds() {
+        let began = Instant::now();
+        let of = |load: f64, left: f64| {
+            let robot = robot(load, 1.8, HOLDS);
+            let ease = |joint: &JointView| {
+                let told = grip_force(&rig(), joint.joint);
+                JointView { force: Some(left * told), ..joint.clone() }
+            };
+            RobotView { joints: robot.joints.iter().map(ease).collect(), ..robot }
+        };
+        for (load, left, loses) in [(0.08, 0.5, false), (0.08, 1.0, true), (0.03, 0.5, true)] {
+            let mut held = watch(began);
+            for seconds in 0..4 {
+                let after = held.look(&of(load, left), began + Duration::from_secs(seconds));
+                assert_eq!(
+                    after != SinceHeld::Held,
+                    loses && seconds > 0,
+                    "{load} of {left} after {seconds} s"
+                );
+            }
         }
     }
 

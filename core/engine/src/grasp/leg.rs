@@ -1,6 +1,7 @@
 //! A part of a step of a hand, told as it goes on.
 
-use std::time::{Duration, Instant};
+use std::cell::Cell;
+use std::time::Duration;
 
 use plumbline_model::JobContext;
 use plumbline_model::robot::Posture;
@@ -13,28 +14,40 @@ pub struct Leg {
     doing: &'static str,
     /// Where it begins and where it ends, of 1.
     share: [f64; 2],
-    /// Since when it is on its way, and how long that takes.
-    way: Option<(Instant, Duration)>,
+    /// How long its way takes.
+    lasts: Duration,
+    /// For how long it has been on its way; while it is held, it is not.
+    on_its_way: Cell<Duration>,
+    /// What was told last: it never goes back.
+    told: Cell<f64>,
 }
 
 impl Leg {
     /// One that has just begun.
     pub fn new(doing: &'static str, share: [f64; 2]) -> Self {
-        Self { doing, share, way: None }
+        let [begins, _] = share;
+        let (lasts, on_its_way) = (Duration::ZERO, Cell::default());
+        Self { doing, share, lasts, on_its_way, told: Cell::new(begins) }
     }
 
     /// It sets out, through these postures at this speed.
     pub fn sets_out(&mut self, from: &Posture, way: &[Posture], speed_rad_s: f64) {
         let starts = std::iter::once(from).chain(way);
-        let lasts = starts.zip(way).map(|(from, to)| duration(from.distance_rad(to), speed_rad_s)).sum();
-        self.way = Some((Instant::now(), lasts));
+        self.lasts = starts.zip(way).map(|(from, to)| duration(from.distance_rad(to), speed_rad_s)).sum();
+        self.on_its_way.set(Duration::ZERO);
+    }
+
+    /// It goes on for so long.
+    pub fn goes_on(&self, for_so_long: Duration) {
+        self.on_its_way.set(self.on_its_way.get() + for_so_long);
     }
 
     /// Tells how far it is.
     pub fn report(&self, context: &dyn JobContext) {
-        let gone = self.way.map_or(0.0, |(since, lasts)| gone(since.elapsed(), lasts));
         let [begins, ends] = self.share;
-        context.report(begins + gone * (ends - begins), self.doing);
+        let now = begins + gone(self.on_its_way.get(), self.lasts) * (ends - begins);
+        self.told.set(self.told.get().max(now));
+        context.report(self.told.get(), self.doing);
     }
 }
 

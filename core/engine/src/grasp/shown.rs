@@ -38,7 +38,7 @@ impl GraspWorkflow {
             may_hold: self.waits.as_ref().filter(|_| self.held.is_none()).and_then(Waits::may_hold),
             not_made: self.not_made.clone(),
             hand_moved: self.hand_moved,
-            gates: self.gates(around, self.choice).into(),
+            gates: self.gates(around, self.planned_hand()).into(),
             phase,
             plan: self.plan.clone(),
             run: self.progress.as_ref().map(|progress| Arc::new(progress.run())),

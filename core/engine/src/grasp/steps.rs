@@ -116,10 +116,11 @@ impl Hand<'_> {
     }
 
     fn close(&mut self) -> Result<(), NoStep> {
-        self.body.begin_leg("closing", WHOLE);
+        self.body.begin_leg("closing the thumb", [0.1, 0.4]);
         let from = self.body.commanded()?;
         let closed = self.planner.closed(&from);
         self.body.follow(&[self.planner.thumb_closed(&from)], SPEED_RAD_S)?;
+        self.body.begin_leg("closing the fingers", [0.4, 1.0]);
         Ok(self.body.follow(&[closed], SPEED_RAD_S)?)
     }
 

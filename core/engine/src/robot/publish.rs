@@ -128,6 +128,7 @@ impl Worker {
             voltage_v: reading.and_then(|r| r.voltage_v),
             torque_on: reading.and_then(|r| r.torque_on),
             let_go: reading.is_some_and(|r| r.let_go),
+            force: reading.and_then(|r| r.force),
             no_force: reading.is_some_and(|r| r.torque_on == Some(true) && r.force == Some(0.0)),
             age: reading.and_then(|r| r.age),
             problem: reading.and_then(|r| r.problem.clone()),

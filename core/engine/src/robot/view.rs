@@ -170,6 +170,8 @@ pub struct JointView {
     pub let_go: bool,
     /// It has torque on and no force: its servo shut down after an overload.
     pub no_force: bool,
+    /// Share of its stall torque that its servo may use, as it says.
+    pub force: Option<f64>,
     /// Age of the angle.
     pub age: Option<Duration>,
     /// What is wrong with it and what to do.
@@ -204,6 +206,7 @@ impl JointView {
             torque_on: None,
             let_go: false,
             no_force: false,
+            force: None,
             age: None,
             problem: None,
             history: Arc::from([]),
@@ -223,6 +226,7 @@ impl JointView {
             torque_on: None,
             let_go: false,
             no_force: false,
+            force: None,
             age: None,
             problem: None,
             ..self.clone()

@@ -35,10 +35,10 @@ impl Controller {
         for arm in &rig.arms {
             let presses = |slot: &Slot| slot.is_limited() && arm.hand.contains(&slot.reading.joint);
             let slots = self.exchange.slots.iter().filter(|slot| presses(slot));
-            let Some(warmest_c) = slots.filter_map(|slot| slot.reading.temperature_c).reduce(f64::max) else {
-                continue;
-            };
-            let left = left_at(warmest_c, &rig.gate);
+            let warmest_c = slots.clone().filter_map(|slot| slot.reading.temperature_c).reduce(f64::max);
+            let eased = slots.map(|slot| slot.eased).fold(1.0, f64::min);
+            // Also where some of them were told anew, and others were not.
+            let left = warmest_c.map_or(eased, |warmest_c| eased.min(left_at(warmest_c, &rig.gate)));
             for slot in self.exchange.slots.iter_mut().filter(|slot| presses(slot) && slot.eased > left) {
                 (slot.eased, slot.force_tries) = (left, 0);
             }

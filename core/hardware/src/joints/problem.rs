@@ -86,7 +86,7 @@ pub(super) fn warm(title: &str, temperature_c: f64, gate: &Gate) -> String {
 /// A servo that gets warm because it presses on what is held.
 pub(super) fn warm_of_holding(title: &str, temperature_c: f64, gate: &Gate) -> String {
     format!(
-        "{title} is at {temperature_c:.0} °C from pressing; the warmer, the less its hand presses, and at {:.0} °C it lets go: put down what it holds",
+        "{title} is at {temperature_c:.0} °C from pressing, and lets go at {:.0} °C: put down what the hand holds, or open it",
         gate.hot_c
     )
 }

@@ -25,7 +25,8 @@ impl Controller {
             reading.problem = problem::of(slot, gate);
             reading.let_go = slot.let_go || slot.holds_unasked();
             if let Some(temperature_c) = reading.temperature_c.filter(|t| *t >= gate.warm_c) {
-                let warm = if slot.is_limited() { problem::warm_of_holding } else { problem::warm };
+                let grips = self.grips.iter().any(|grip| grip.joint == reading.joint);
+                let warm = if grips { problem::warm_of_holding } else { problem::warm };
                 warnings.push(warm(&slot.unit.servo.title, temperature_c, gate));
             }
             reading

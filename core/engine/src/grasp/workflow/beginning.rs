@@ -1,5 +1,7 @@
 //! How something gets under way, and what follows when it has ended.
 
+use plumbline_grasp::Hand;
+
 use super::{GraspWorkflow, Running, What};
 use crate::grasp::around::GraspAround;
 use crate::grasp::attempt::Attempt;
@@ -28,11 +30,7 @@ impl GraspWorkflow {
             What::Hand(step) => self.hand_for(step, around),
             What::Plan | What::Grasp => self.hand(),
         };
-        let choice = match what {
-            What::Hand(_) => hand.into(),
-            What::Plan => self.choice,
-            What::Grasp => self.planned_hand(),
-        };
+        let choice = self.moves(what, hand);
         let needed = self.gates(around, choice);
         // A step of the hand needs neither eyes nor a method.
         let needed: Vec<_> = needed
@@ -105,8 +103,17 @@ impl GraspWorkflow {
         }
     }
 
+    /// Which hand may move for it.
+    pub(super) fn moves(&self, what: What, hand: Hand) -> HandChoice {
+        match what {
+            What::Hand(_) => hand.into(),
+            What::Plan => self.choice,
+            What::Grasp => self.planned_hand(),
+        }
+    }
+
     /// The hand whose way is shown, or the chosen one: what was shown is what moves.
-    pub(super) fn planned_hand(&self) -> HandChoice {
+    pub(in crate::grasp) fn planned_hand(&self) -> HandChoice {
         self.plan.as_ref().map_or(self.choice, |plan| plan.hand.into())
     }
 

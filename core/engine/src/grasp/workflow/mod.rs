@@ -261,7 +261,9 @@ mod old_plan_tests {
         let moment = Moment { now: Instant::now(), skipped: Skipped::default() };
         assert!(room.view(&around, &moment).plan.is_some());
         // What was shown is what moves, whichever hand would be chosen by now.
-        assert_eq!((room.choice, room.planned_hand()), (HandChoice::Auto, HandChoice::Left));
+        let moves = |what| room.moves(what, Hand::Right);
+        assert_eq!([moves(What::Grasp), moves(What::Plan)], [HandChoice::Left, HandChoice::Auto]);
+        assert_eq!(moves(What::Hand(HandStep::Home)), HandChoice::Right);
         // The eyes are brought back, or an effect is added: the robot is known otherwise.
         around.model = Arc::new(RobotModel::nominal(rig));
         assert!(room.view(&around, &moment).plan.is_none());

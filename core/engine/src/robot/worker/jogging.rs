@@ -3,7 +3,6 @@
 use std::time::{Duration, Instant};
 
 use plumbline_effects::ModelArm;
-use plumbline_effects::rig_model::Conditions;
 use plumbline_hardware::joints::{Motion, Refusal, Setpoint, SetpointKind};
 use plumbline_model::robot::Posture;
 
@@ -53,9 +52,6 @@ impl Worker {
         let until = now + Duration::from_millis(JOG_DEADLINE_MS);
         match &mut self.jog {
             Some(jog) => {
-                if rates.velocity_m_s[2] != 0.0 {
-                    jog.level_m = None;
-                }
                 (jog.rates, jog.until) = (rates, until);
             }
             None => {
@@ -68,6 +64,13 @@ impl Worker {
             }
         }
         Ok(())
+    }
+
+    /// Another tip, or another model of the arm, is as high as it is.
+    pub(super) fn forget_level(&mut self) {
+        if let Some(jog) = &mut self.jog {
+            jog.level_m = None;
+        }
     }
 
     pub(super) fn end_jog(&mut self) -> Result<(), Unable> {
@@ -98,15 +101,19 @@ impl Worker {
     }
 
     /// Joint speeds that take the tip where it is asked to; what goes level is lifted as far as it sank by its weight on
-    /// the way. `None`: the arm reaches no farther.
+    /// the way. `None`: the arm reaches no farther that way.
     fn level_rates(&self, arm: &ModelArm, jog: &mut Jog, fastest_rad_s: f64) -> Option<Vec<f64>> {
+        let asked = joint_rates(arm, &jog.goal, &jog.rates, fastest_rad_s)?;
+        if jog.rates.velocity_m_s[2] != 0.0 {
+            jog.level_m = None;
+            return Some(asked);
+        }
         let lifted = self.present().and_then(|measured| {
-            let height_m = arm.tip(&measured, &Conditions::default()).coords.z;
+            let height_m = self.tip_by_encoders(&measured).isometry.translation.z;
             let level_m = *jog.level_m.get_or_insert(height_m);
-            lifted(&jog.rates, level_m - height_m)
+            joint_rates(arm, &jog.goal, &lifted(&jog.rates, level_m - height_m)?, fastest_rad_s)
         });
-        let lifted = lifted.and_then(|rates| joint_rates(arm, &jog.goal, &rates, fastest_rad_s));
-        lifted.or_else(|| joint_rates(arm, &jog.goal, &jog.rates, fastest_rad_s))
+        Some(lifted.unwrap_or(asked))
     }
 
     /// Whether the arm stands at its goals.

@@ -19,6 +19,7 @@ impl Worker {
         (self.rig, self.title) = (model.rig().clone(), model.title().into());
         self.arm_model = model.arm(&self.tip).ok();
         self.model = model;
+        self.forget_level();
         if screen_moved {
             self.paths.place(&self.rig);
             self.reach = Reach::with_model(&self.rig, &self.tip, self.paths.model()).ok();

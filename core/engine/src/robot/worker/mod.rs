@@ -259,6 +259,7 @@ impl Worker {
                 self.arm_model = self.model.arm(&link).ok();
                 self.tip = link;
                 self.trail.clear();
+                self.forget_level();
                 Ok(())
             }
             RobotCommand::Speed(speed) => {
