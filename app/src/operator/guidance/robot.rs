@@ -14,6 +14,8 @@ use crate::operator::words::mount;
 use crate::operator::words::robot::{BY_STOP, is_close, is_limp, move_sentence, moved_name, silent_together};
 use crate::operator::{Action, MountAction, RobotAction, Screen};
 
+/// A move that turns no joint by half a degree is said to be a small one, rad.
+const LITTLE_RAD: f64 = 8.7e-3;
 /// A move that turns no joint by more than this is none, rad.
 const NO_WAY_RAD: f64 = 2e-3;
 /// Less than that beyond a limit nobody sees, rad.
@@ -202,9 +204,14 @@ fn shown(preview: &Preview, view: &View) -> Guidance {
             .warn()
             .then("Go to Grasp", Action::Go(Screen::Grasp));
     }
-    let turns = preview.largest_turn.as_ref().is_some_and(|(_, by_rad)| by_rad.abs() > NO_WAY_RAD);
-    if !turns && preview.path.is_ok() {
-        return say(format!("Shown as a ghost: {}. The joints stand there already.", preview.title));
+    let turn_rad = preview.largest_turn.as_ref().map_or(0.0, |(_, by_rad)| by_rad.abs());
+    if turn_rad < LITTLE_RAD && preview.path.is_ok() {
+        let there =
+            say(format!("Shown as a ghost: {}. The joints stand there, to half a degree.", preview.title));
+        return match turn_rad < NO_WAY_RAD {
+            true => there,
+            false => there.then(moved_name(preview), Action::Robot(RobotAction::Move)),
+        };
     }
     let guidance = say(move_sentence(preview)).then(moved_name(preview), Action::Robot(RobotAction::Move));
     if is_close(preview) { guidance.warn() } else { guidance }
