@@ -103,7 +103,7 @@ impl EyesWorkflow {
         // Watching drift says itself when the eyes turn, with the same share; and what a law of time takes off, the
         // calibration alone does not know.
         // Cold eyes do not see as they did when they were calibrated warm, and will again.
-        let is_cold = self.to_be_warm_min(around, now).is_some();
+        let is_cold = self.still_gets_as_warm(around, now);
         let is_needed = is_proposed || !(around.is_watched || around.is_corrected || is_cold);
         if !sees_now || around.arm_moves || !is_needed {
             return self.put_off(now);
@@ -179,7 +179,7 @@ impl EyesWorkflow {
         if !is_live(&around.source) {
             return false;
         }
-        let is_cold = self.to_be_warm_min(around, context.time.instant).is_some();
+        let is_cold = self.still_gets_as_warm(around, context.time.instant);
         let by_itself = &mut self.health.by_itself;
         let is_told = by_itself.told.as_ref().is_some_and(|told| Arc::ptr_eq(told, &of.in_use));
         if health.in_use.is_good {

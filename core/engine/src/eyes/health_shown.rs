@@ -8,7 +8,7 @@ use super::health_judged::{Ask, Of};
 use super::view::{HealthState, HealthView, ProposalHealth};
 use super::workflow::{EyesAround, EyesWorkflow};
 use crate::ground::Time;
-use crate::ground::warming::Warmth;
+use crate::ground::warming::{Warmth, still_gets_as_warm};
 
 impl EyesWorkflow {
     /// What the window shows of it: of the calibration in use and of the proposal as they are now, and of nothing else.
@@ -42,6 +42,13 @@ impl EyesWorkflow {
             Warmth::Colder { wait_min } => Some(wait_min),
             Warmth::Alike | Warmth::Warmer => None,
         }
+    }
+
+    /// Whether what these eyes see otherwise than they were calibrated may pass by itself.
+    pub(super) fn still_gets_as_warm(&self, around: &EyesAround, now: Instant) -> bool {
+        let calibrated_min = || self.in_use()?.evidence.as_ref()?.minutes_since_on;
+        let both_min = self.eyes_on_min(around, now).zip(calibrated_min());
+        both_min.is_some_and(|(on_min, calibrated_min)| still_gets_as_warm(on_min, calibrated_min))
     }
 
     /// For how long the eyes have been on, min: a twin's clock runs by itself. `None`: nobody knows.

@@ -6,6 +6,8 @@ use plumbline_effects::robot_model::{WARMING_S, warm_share};
 /// A difference of more than this share of the whole way is worth a word: on the lab's twin, whose eyes
 /// turn against each other by 10 mrad on the whole way, this share is 4 mm of depth at 0.45 m.
 const SHARE: f64 = 0.15;
+/// Less than this share of the way is not seen beside what else moves them.
+const PASSES_SHARE: f64 = 0.05;
 
 /// How warm the eyes are, beside how warm they were when they were calibrated.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,6 +36,12 @@ impl Warmth {
             Self::Alike
         }
     }
+}
+
+/// Whether eyes that have been on for so many minutes still come nearer to how they were when they were calibrated: what
+/// they see otherwise now may pass by itself.
+pub fn still_gets_as_warm(on_min: f64, calibrated_min: f64) -> bool {
+    share(calibrated_min) - share(on_min) > PASSES_SHARE
 }
 
 /// Whether eyes that have been on for so many minutes still see otherwise than they will when they are warm.
@@ -69,6 +77,13 @@ mod tests {
     fn eyes_are_cold_until_they_are_nearly_as_warm_as_they_get() {
         assert!(is_cold(0.0) && is_cold(3.0) && is_cold(12.0));
         assert!(!is_cold(13.0) && !is_cold(600.0));
+    }
+
+    #[test]
+    fn what_may_pass_by_itself_does_so_some_minutes_after_they_are_about_as_warm() {
+        assert_eq!(Warmth::of(13.0, 25.0), Warmth::Alike);
+        assert!(still_gets_as_warm(13.0, 25.0) && !still_gets_as_warm(20.0, 25.0));
+        assert!(!still_gets_as_warm(40.0, 3.0), "warmer than then, they do not come back");
     }
 
     #[test]

@@ -88,7 +88,7 @@ fn cold_eyes_are_not_judged_by_itself_and_nothing_bad_is_said_of_their_calibrati
     desk.looks_bad();
     assert_eq!(desk.said(), Vec::<String>::new());
     // Warm, it is judged as ever, and what looks bad twice is told.
-    (0..300).for_each(|_| {
+    (0..3000).for_each(|_| {
         if desk.started.is_empty() {
             desk.see(dark());
         }
