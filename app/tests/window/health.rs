@@ -275,6 +275,6 @@ fn what_was_judged_with_colder_eyes_does_not_stand_once_they_are_warm() {
     let cold = of(false);
     assert!(says(&cold, "Wait 7 min, then ask again") && says(&cold, "with cold eyes"));
     let warm = of(true);
-    assert!(says(&warm, "are as warm by now: it does not stand any more. Ask again."));
+    assert!(says(&warm, "have got warmer since it was judged: it does not stand any more. Ask again."));
     assert!(!says(&warm, "Calibrate the eyes again"));
 }

@@ -26,8 +26,7 @@ pub fn outdated(when: &JudgedWhen, now: Timestamp) -> Option<String> {
     }
     if when.warmed_since {
         return Some(
-            "It was judged with eyes that were colder than when the calibration in use was made, and are as warm by now: it does not stand any more. Ask again."
-                .to_owned(),
+            "The eyes have got warmer since it was judged: it does not stand any more. Ask again.".to_owned(),
         );
     }
     when.is_outdated(now)

@@ -116,7 +116,8 @@ impl Judged {
             eyes_on_min: self.then.eyes_on_min,
             moved_m: self.moved_m(around),
             colder,
-            warmed_since: colder == Some(true) && self.was_colder(on_min) == Some(false),
+            warmed_since: colder == Some(true) && self.was_colder(on_min) == Some(false)
+                || on_min.zip(self.then.eyes_on_min).is_some_and(got_warmer),
         }
     }
 
@@ -162,6 +163,11 @@ impl Judged {
             |now: &&Drifted| is_live(&around.source) || then.is_some_and(|then| then.watch == now.watch);
         drifted.filter(goes_on).and_then(|now| now.since(then))
     }
+}
+
+/// Whether eyes that have been on for the first time are warmer by much than after the second, min.
+fn got_warmer((on_min, then_min): (f64, f64)) -> bool {
+    Warmth::of(on_min, then_min) == Warmth::Warmer
 }
 
 /// The farther of both.

@@ -49,7 +49,7 @@ pub struct JudgedWhen {
     /// Whether the eyes were colder then than when the calibration in use was made; `None`: nobody knows how warm they
     /// were one of both times.
     pub colder: Option<bool>,
-    /// Whether they are as warm by now: what was seen then is not what they see.
+    /// Whether they are as warm by now, or much warmer than then: what was seen then is not what they see.
     pub warmed_since: bool,
 }
 

@@ -51,6 +51,22 @@ fn what_was_judged_says_when_and_how_far_places_have_moved_since() {
     assert_eq!(when(&mut desk).moved_m, None, "it is not watched");
 }
 
+/// Calibrated cold, judged cold, and warm by now: that it held says nothing of now.
+#[test]
+fn what_was_judged_with_cold_eyes_does_not_stand_when_they_are_warm() {
+    let mut desk = Desk::new(0.0);
+    desk.calibrated_after(1.0);
+    desk.around.twin_on_s = Some(120.0);
+    desk.ask(EyesCommand::JudgeHealth);
+    desk.until_judging();
+    desk.looks_bad();
+    let is_outdated = |desk: &mut Desk, on_s: f64| {
+        desk.around.twin_on_s = Some(on_s);
+        desk.view().health.when.expect("it was judged").is_outdated(desk.time.day)
+    };
+    assert_eq!([125.0, 160.0, 840.0].map(|on_s| is_outdated(&mut desk, on_s)), [false, false, true]);
+}
+
 #[test]
 fn what_had_moved_before_it_was_judged_is_no_motion_since_although_it_was_just_being_told_anew() {
     for (told, moved_m) in [(DriftTold::Anew, None), (DriftTold::Nothing, Some([0.0, 0.0, 0.05]))] {
