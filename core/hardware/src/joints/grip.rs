@@ -189,7 +189,7 @@ impl Controller {
                 Refusal::Hot { joint, name, temperature_c, limit_c }
             // One that took its limit and not the smaller one goes on as it is: with its own force it would press harder.
             } else if slot.force_tries > TRIES && slot.eased == 1.0 {
-                Refusal::Force { joint, name, share: grip.force * slot.eased }
+                Refusal::Force { joint, name, share: grip.force }
             } else {
                 return true;
             };

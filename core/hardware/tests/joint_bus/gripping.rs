@@ -245,6 +245,33 @@ fn a_hand_that_gets_warm_presses_less_with_all_its_fingers() {
     assert_goals_stay_near(&rig, &chain);
 }
 
+/// With the force of its own memory it would press harder than before.
+#[test]
+fn a_servo_that_takes_no_smaller_limit_keeps_the_one_it_has_and_lets_go_when_it_is_hot() {
+    let (rig, chain, driver) = ready();
+    let (finger, id) = finger(&rig);
+    block(&chain, id, true);
+    driver.grip(grip(finger, bent_rad(&rig, finger))).expect("queued");
+    await_state(&driver, "the limit", |s| s.of(finger).is_some_and(|r| r.force.is_some_and(|f| f < 0.71)));
+    let change = |keeps: bool, to_c: u16| {
+        let mut chain = chain.lock();
+        let servo = chain.servos.get_mut(&id).expect("there");
+        servo.keeps_its_limit = keeps;
+        servo.set(Item::PresentTemperature, to_c);
+    };
+    change(true, 66);
+    // Longer than it is told so in vain: 25 cycles of the bus.
+    std::thread::sleep(Duration::from_millis(1500));
+    assert_eq!(limit_of(&chain, id), FORCE_RAW);
+    assert!(driver.state().refusal.is_none(), "{:?}", driver.state().refusal);
+    // One that takes it after all is eased as it gets warmer, and let go when it is hot.
+    change(false, 68);
+    await_state(&driver, "less", |s| s.of(finger).is_some_and(|r| r.force.is_some_and(|f| f < 0.5)));
+    change(false, 75);
+    await_state(&driver, "let go", |s| matches!(s.refusal, Some((_, Refusal::Hot { .. }))));
+    assert_goals_stay_near(&rig, &chain);
+}
+
 const PORT: &str = "PLUMBLINE_TEST_GRIP_PORT";
 
 /// Run as a process of its own by the test below; does nothing otherwise.
