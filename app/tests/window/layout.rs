@@ -93,9 +93,15 @@ pub(super) fn overlapping(lines: &[Line]) -> Vec<String> {
     faults
 }
 
+/// In both themes.
 fn faults(view: &View, screen: Screen, size: [f32; 2], zoom: f32) -> Vec<String> {
+    let of = |theme| faults_of(view, screen, (size, zoom), theme);
+    [ThemeChoice::Light, ThemeChoice::Dark].into_iter().flat_map(of).collect()
+}
+
+fn faults_of(view: &View, screen: Screen, (size, zoom): ([f32; 2], f32), theme: ThemeChoice) -> Vec<String> {
     let fake = Fake::over(view.clone());
-    let settings = WindowSettings { theme: ThemeChoice::Light, screen, zoom, ..WindowSettings::default() };
+    let settings = WindowSettings { theme, screen, zoom, ..WindowSettings::default() };
     let mut window = fake.window_of_size(settings, size);
     window.run_steps(4);
     let lines = lines(&window);
@@ -105,7 +111,7 @@ fn faults(view: &View, screen: Screen, size: [f32; 2], zoom: f32) -> Vec<String>
     if screen != Screen::Scores {
         faults.extend(cut(&lines));
     }
-    faults.iter().map(|fault| format!("{screen:?} {size:?} {zoom}: {fault}")).collect()
+    faults.iter().map(|fault| format!("{screen:?} {theme:?} {size:?} {zoom}: {fault}")).collect()
 }
 
 #[test]
