@@ -81,7 +81,6 @@ impl Known {
             arm: !of_arm.is_empty(),
             eyes: !of_eyes.is_empty(),
             watched: of_eyes.iter().any(|row| row.stand.is_some()),
-            roll_shows: measurements.has(What::EyePoints) || places(&of_eyes) >= ROLL_SHOWS_AT,
             neck_moved: neck_moved(&of_eyes),
             only_watched: !of_eyes.is_empty() && of_eyes.iter().all(|row| row.stand.is_some()),
             eye_sets: measurements.sets_of_eyes(),
@@ -107,6 +106,12 @@ impl Known {
 }
 
 impl Measurements {
+    /// Whether what was seen of things that were watched tells an eye that rolls and pitches from both that nod.
+    pub fn roll_shows(&self) -> bool {
+        let of_eyes: Vec<&Observation> = self.rows.iter().filter(|row| !row.what.is_placed()).collect();
+        self.has(What::EyePoints) || places(&of_eyes) >= ROLL_SHOWS_AT
+    }
+
     /// Labels of the sets in which the eyes measured, if what is between them could be told: two sets at least,
     /// all rows in one of them, and rows enough in each.
     pub fn sets_of_eyes(&self) -> Vec<String> {

@@ -8,6 +8,9 @@ use plumbline_model::{CameraModel, Pixel, Raw};
 use crate::arm::Arm;
 use crate::observation::Observation;
 
+/// Nearer to the axis than this (rad) an angle, its sine and its tangent are the same.
+const NEAR_AXIS: f64 = 1e-8;
+
 /// The eyes of a robot, nominal.
 #[derive(Clone, Debug)]
 pub struct Eyes {
@@ -205,8 +208,7 @@ impl Eyes {
         Some(vec![left.u_px, left.v_px, right.u_px, right.v_px])
     }
 
-    /// What stereo with the nominal eyes makes of that: bearing right and down (tangents) and
-    /// baseline over depth, in the nominal left camera.
+    /// What stereo with the nominal eyes makes of that, in their natural coordinates: see [`Self::natural`].
     pub fn estimate(
         &self,
         row: &Observation,
@@ -219,16 +221,40 @@ impl Eyes {
         Some(self.natural(&in_left.coords).to_vec())
     }
 
-    /// Bearing right and down (tangents) and baseline over depth of a point in the left camera.
+    /// Bearing right and down of a point in the left camera, and the angle between the rays of both eyes to it, rad.
+    ///
+    /// The bearing is how far off the axis the ray is, split by the direction in which it lies: a fisheye makes lengths
+    /// on its sensor of that, so a pixel is nearly the same step in each of the three wherever one looks. A tangent grows
+    /// by five times as much at 65° off the axis as in the middle.
     pub fn natural(&self, in_left: &Point3<f64>) -> [f64; 3] {
-        [in_left.x / in_left.z, in_left.y / in_left.z, self.cameras.baseline_m() / in_left.z]
+        let ray = &in_left.coords;
+        let across = ray.xy().norm();
+        let per_length =
+            if across > NEAR_AXIS * ray.norm() { across.atan2(ray.z) / across } else { 1.0 / ray.z };
+        let to_right = self.right_in_left_m();
+        // Of the triangle of both eyes and the point: the cross product is the same with either ray.
+        let between = ray.cross(&to_right).norm().atan2(ray.dot(&(ray - to_right)));
+        [per_length * ray.x, per_length * ray.y, between]
     }
 
-    /// The other way: the point in the left camera, m.
+    /// The other way: the point in the left camera, m. `None` where the rays do not meet.
     pub fn place(&self, natural: &[f64]) -> Option<Point3<f64>> {
-        let [right, down, disparity] = natural.first_chunk::<3>()?;
-        let depth_m = self.cameras.baseline_m() / disparity;
-        (depth_m > 0.0 && depth_m.is_finite()).then(|| Point3::new(right * depth_m, down * depth_m, depth_m))
+        let [right, down, between] = *natural.first_chunk::<3>()?;
+        let off_axis = right.hypot(down);
+        let across = if off_axis > NEAR_AXIS { off_axis.sin() / off_axis } else { 1.0 };
+        let ray = Vector3::new(across * right, across * down, off_axis.cos());
+        let to_right = self.right_in_left_m();
+        let at_left = ray.cross(&to_right).norm().atan2(ray.dot(&to_right));
+        // Law of sines.
+        let range_m = to_right.norm() * (at_left + between).sin() / between.sin();
+        let meet =
+            between > 0.0 && at_left + between < std::f64::consts::PI && off_axis < std::f64::consts::PI;
+        (meet && range_m.is_finite()).then(|| Point3::from(ray * range_m))
+    }
+
+    /// The right eye as the left one has it, m.
+    fn right_in_left_m(&self) -> Vector3<f64> {
+        self.cameras.right_from_left.isometry.inverse().translation.vector
     }
 }
 
@@ -260,4 +286,66 @@ fn shifted(
         middle.u_px + stretched.x + deviation.box_px[0] + own[0],
         middle.v_px + stretched.y + deviation.box_px[1] + own[1],
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn eyes() -> Eyes {
+        Eyes::of_rig(&Rig::built_in("nico").expect("comes along")).expect("eyes")
+    }
+
+    /// A point so far off the axis (rad), this way round it, at a distance of 0.5 m.
+    fn point(off_axis_rad: f64, way_rad: f64) -> Point3<f64> {
+        let across = off_axis_rad.sin();
+        Point3::new(across * way_rad.cos(), across * way_rad.sin(), off_axis_rad.cos()) * 0.5
+    }
+
+    #[test]
+    fn a_place_comes_back_from_its_natural_coordinates_also_on_the_axis_and_beside_the_image() {
+        let eyes = eyes();
+        for off_axis_rad in [0.0, 1e-9, 1e-3, 0.3, 0.9, 1.3, 1.7] {
+            for way in 0..8 {
+                let at = point(off_axis_rad, f64::from(way));
+                let back = eyes.place(&eyes.natural(&at)).expect("a place");
+                assert!((back - at).norm() < 1e-9, "{off_axis_rad} {way}: {at} {back}");
+            }
+        }
+    }
+
+    #[test]
+    fn rays_that_do_not_meet_are_no_place() {
+        let eyes = eyes();
+        for between in [0.0, -0.01, std::f64::consts::PI, f64::NAN] {
+            assert_eq!(eyes.place(&[0.1, 0.2, between]), None);
+        }
+        assert_eq!(eyes.place(&[0.1, 0.2]), None);
+    }
+
+    #[test]
+    fn a_pixel_is_nearly_the_same_step_in_the_middle_and_far_off_the_axis() {
+        let eyes = eyes();
+        let row = Observation {
+            neck_rad: vec![0.0; eyes.neck.len()],
+            ..Observation::imagined(crate::measurements::What::Place)
+        };
+        let robot_from_left = eyes.robot_from_left(&row.neck_rad, &EyesDeviation::none(eyes.neck.len()));
+        let step = |off_axis_rad: f64| -> f64 {
+            let situation = eyes.situation(&row, robot_from_left * point(off_axis_rad, 0.4));
+            let none = EyesDeviation::none(eyes.neck.len());
+            let still = eyes.estimate(&row, &situation, &none).expect("in view");
+            // Both images shifted by a pixel along their rows, and the right one alone.
+            let both = EyesDeviation { box_px: [1.0, 0.0], ..none.clone() };
+            let right = EyesDeviation { disparity_px: 1.0, ..none };
+            let both = eyes.estimate(&row, &situation, &both).expect("in view")[0] - still[0];
+            let right = eyes.estimate(&row, &situation, &right).expect("in view")[2] - still[2];
+            both.abs().max(right.abs())
+        };
+        let middle_rad = step(0.0);
+        for off_axis_rad in [0.4, 0.8, 1.1] {
+            let ratio = step(off_axis_rad) / middle_rad;
+            assert!((0.6..1.6).contains(&ratio), "{off_axis_rad}: {ratio}");
+        }
+    }
 }

@@ -99,7 +99,8 @@ fn a_neck_that_stands_still_shows_no_zeros_and_one_that_moves_does() {
         }
     }
     assert_eq!(of_neck(&measurements), ["head_y"]);
-    let mounts = Effect::candidates(&measurements).into_iter().filter(|one| one.kind == Kind::CameraMount);
+    let is_mount = |one: &Effect| one.kind == Kind::CameraMount && one.growth().is_none();
+    let mounts = Effect::candidates(&measurements).into_iter().filter(is_mount);
     assert_eq!(mounts.count(), 1, "what the zero does is the mount's");
 }
 

@@ -50,8 +50,8 @@ impl What {
     /// - Pose: x, y, z in the external frame.
     /// - Oriented pose: the same, and the turn that leads from the measured orientation to the
     ///   predicted one, a rotation vector in the external frame (measured: zero).
-    /// - Place: bearing to the right and down in the left eye (tangents), and the disparity angle
-    ///   (baseline over depth), all nearly of the same noise.
+    /// - Place: bearing to the right and down in the left eye, and the angle between the rays of both eyes
+    ///   (disparity), all nearly of the same noise wherever the place is.
     /// - Eye points: u and v in the left image, u and v in the right one.
     pub fn coordinates(self) -> &'static [(&'static str, Unit)] {
         match self {

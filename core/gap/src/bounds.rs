@@ -1,11 +1,11 @@
 //! What may not be a name, whatever speaks for it on the rows that it was found in: what repeats contradict,
 //! what leaves most of the gap open, and what does not hold on rows that were not used.
 
-use plumbline_effects::{Assumed, Kind, Measurements};
+use plumbline_effects::{Assumed, Measurements};
 
 use crate::compare::{self, Compared};
 use crate::finding::{Dependence, FloorSource, Shown, Verdict};
-use crate::search::{self, Found, Source};
+use crate::search::{self, Found, still_right};
 
 /// Rows stay above the noise when they are this many times as far off …
 const ABOVE: f64 = 1.3;
@@ -155,8 +155,7 @@ fn misled(found: &mut Found, probability: f64) {
     let before = *unknown;
     *unknown = unknown.max(probability);
     for effect in &mut found.effects {
-        let source = Kind::of_id(&effect.id).map_or(Source::Arm, Source::of);
-        let less = source.still_right(*unknown) / source.still_right(before);
+        let less = still_right(*unknown) / still_right(before);
         effect.probability *= less;
         effect.class_probability *= less;
     }

@@ -84,7 +84,7 @@ fn found_in(
         found.verdict = Verdict::NoGap;
     }
     context.checkpoint()?;
-    if found.floor.source == FloorSource::Fitted {
+    if found.floor != compared.floor {
         with_floor(&mut compared, &found.floor);
     }
     let mut shown = if options.show && !found.assumed.effects.is_empty() {

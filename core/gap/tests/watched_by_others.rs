@@ -158,9 +158,10 @@ fn is_of_eyes(finding: &Finding) -> bool {
 fn eyes_that_warm_up_by_other_physics_are_named() {
     let rig = default_rig();
     let named =
-        (0..24).filter(|seed| is_of_eyes(&found(&World::drawn(1500 + seed, true), &rig, *seed))).count();
-    println!("{named} of 24 named");
-    assert!(named >= 20, "{named} of 24");
+        (0..96).filter(|seed| is_of_eyes(&found(&World::drawn(1500 + seed, true), &rig, *seed))).count();
+    println!("{named} of 96 named");
+    // Of two dozen, chance alone makes two more or less.
+    assert!(named >= 80, "{named} of 96");
 }
 
 #[test]

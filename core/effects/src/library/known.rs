@@ -38,8 +38,6 @@ pub(crate) struct Known {
     pub(crate) background: bool,
     /// The eyes watched things that stood still.
     pub(crate) watched: bool,
-    /// What was seen of them tells an eye that rolls from others.
-    pub(crate) roll_shows: bool,
     /// Which joints of the neck moved.
     pub(crate) neck_moved: Vec<bool>,
     /// They watched nothing else: what is constant there has no name.
@@ -118,13 +116,10 @@ impl Known {
                 let ends = [all.first(), all.last()].map(|end| end.copied().unwrap_or(0.0));
                 with_shapes(&effect, &thinned(&all, MOST_MOMENTS), ends)
             }
-            // Elsewhere what is constant would be taken for something that grows. An image that shifts acts as an eye that
-            // turns: where one of them may grow, so may the other.
-            Shape::Growth(_) if self.watched || matches!(effect.kind, Kind::EyeYaw | Kind::ImageShift) => {
+            Shape::Growth(_) => {
                 let grown = self.grown(&effect);
                 [vec![effect], grown].concat()
             }
-            Shape::Growth(_) => vec![effect],
             Shape::OneOf(choices) => {
                 let others = (1..choices.len()).map(|choice| effect.clone().with_shape(Some(choice as f64)));
                 std::iter::once(effect.clone()).chain(others).collect()
@@ -137,8 +132,7 @@ impl Known {
     /// An effect of the eyes with every time law that is tried.
     fn grown(&self, effect: &Effect) -> Vec<Effect> {
         let span_s = span(&self.eye_secs);
-        let is_told = effect.kind != Kind::EyeRoll || self.roll_shows;
-        if span_s < SHORTEST_SPAN_S || !is_told {
+        if span_s < SHORTEST_SPAN_S {
             return vec![];
         }
         let lasts = |constant: &f64| *constant <= 2.0 * span_s;

@@ -6,7 +6,7 @@ use plumbline_model::session::{LocalizationRow, LocalizationTable};
 use plumbline_model::{LeftCamera, Point};
 
 use super::{RobotModel, SeenUnder};
-use crate::rig_model::{EyesLeft, tangents_per_angle};
+use crate::rig_model::EyesLeft;
 
 /// A place that was seen at fewer times was not watched: how the eyes find it anew each time is in the rows, too,
 /// and that is in the uncertainty of what is seen already.
@@ -57,7 +57,7 @@ impl RobotModel {
         let predicted = self.rig.eyes.cameras.triangulate(left, right)?;
         let measured = self.rig.robot_from_left(&posture).inverse() * row.estimate?;
         let (measured, predicted) = (self.natural(measured)?, self.natural(predicted)?);
-        Some((measured - predicted) / tangents_per_angle(predicted.x, predicted.y))
+        Some(measured - predicted)
     }
 
     /// What the model has of a row at another time (s), beside eyes as they were calibrated: to the right, down, and
@@ -73,7 +73,7 @@ impl RobotModel {
         let (left, right) = self.project(&row.truth?, &posture, &seen)?;
         let grown = self.natural(self.rig.eyes.cameras.triangulate(left, right)?)?;
         let still = self.natural(self.rig.robot_from_left(&posture).inverse() * row.truth?)?;
-        Some((grown - still) / tangents_per_angle(still.x, still.y))
+        Some(grown - still)
     }
 
     fn natural(&self, at: Point<LeftCamera>) -> Option<Vector3<f64>> {

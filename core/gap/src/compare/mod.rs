@@ -27,7 +27,7 @@ use rayon::prelude::*;
 pub(crate) use crate::statistics::{NORMAL_95, f_tail, median, robust_sd};
 pub(crate) use displacement::{at_m, of_arm};
 pub(crate) use frames::placed;
-pub(crate) use noise::structure_of;
+pub(crate) use noise::{by_neighbors_of_eyes, structure_of};
 
 use crate::covariates::Covariates;
 use crate::error::GapError;

@@ -118,6 +118,27 @@ pub fn floor_of(measurements: &Measurements, assumed: &Assumed, residuals: &[Opt
     Noise { floor: Floor { kinds, source }, repeated, drift: changed, structure: depends }
 }
 
+/// What near neighbors say of the noise of eyes under a model with these residuals, where they told it; never more than it was.
+/// What a mount that sits elsewhere does bends so much over a table that planes through neighbors leave some of it.
+pub fn by_neighbors_of_eyes(
+    measurements: &Measurements,
+    floor: &Floor,
+    residuals: &[Option<Vec<f64>>],
+) -> Option<Floor> {
+    let bends = measurements.rows.iter().all(|row| !row.what.is_placed() && row.stand.is_none());
+    if floor.source != FloorSource::Neighbors || !bends {
+        return None;
+    }
+    let mut next = floor.clone();
+    for kind in &mut next.kinds {
+        let nearby = near_neighbors(measurements, residuals, kind.what);
+        let units = kind.what.coordinates().iter().map(|(_, unit)| finest(*unit));
+        let all = kind.sd.iter_mut().zip(&nearby.sd).zip(units);
+        all.for_each(|((sd, own), finest)| *sd = sd.min(own.max(finest)));
+    }
+    Some(next)
+}
+
 /// What a time law may be off by in a coordinate, in its unit: places and eye points have one unit each.
 fn of_law(ways: &[f64], c: usize) -> f64 {
     let longest = ways.iter().copied().fold(0.0, f64::max);

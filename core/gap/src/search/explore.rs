@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use plumbline_model::JobContext;
 
 use super::field::{Field, log_sum};
-use super::library::{Block, together};
+use super::library::{Block, Grows, together};
 use crate::error::GapError;
 
 /// Sets whose odds against the best one are worse than this are forgotten (Occam's window).
@@ -157,17 +157,17 @@ impl Space<'_> {
         Ok(())
     }
 
-    /// Sets that differ only in how eyes turn sideways in the course of time (which time constant, turned or
-    /// shifted) say the same: together they may be more probable than a set that is so alone, which has nothing of
+    /// Sets that differ only in how eyes turn sideways, or nod, in the course of time (which time constant, turned or
+    /// shifted, one eye or both) say the same: together they may be more probable than a set that is so alone, which has nothing of
     /// it. The best one of those that are the most probable together comes first.
     fn put_first(&self, models: &mut [Model]) {
-        let said = |model: &Model| -> Vec<Option<usize>> {
-            let of = |block: &usize| (!self.blocks[*block].grows_sideways).then_some(*block);
+        let said = |model: &Model| -> Vec<Result<usize, Grows>> {
+            let of = |block: &usize| self.blocks[*block].grows.map_or(Ok(*block), Err);
             let mut said: Vec<_> = model.set.iter().map(of).collect();
             said.sort_unstable();
             said
         };
-        let mut together: BTreeMap<Vec<Option<usize>>, (usize, f64)> = BTreeMap::new();
+        let mut together: BTreeMap<Vec<Result<usize, Grows>>, (usize, f64)> = BTreeMap::new();
         for (place, model) in models.iter().enumerate() {
             together.entry(said(model)).or_insert((place, 0.0)).1 += model.probability;
         }

@@ -431,7 +431,7 @@ mod tests {
             is_family: false,
             is_of_all: false,
             is_one_sided,
-            grows_sideways: false,
+            grows: None,
             name: start,
             log_prior: 0.0,
         }

@@ -162,7 +162,7 @@ pub(super) fn rivals(
             is_family: false,
             is_of_all: false,
             is_one_sided: false,
-            grows_sideways: false,
+            grows: None,
             name: library.names.len(),
             log_prior: share.ln(),
         })

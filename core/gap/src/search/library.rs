@@ -1,5 +1,7 @@
 //! Candidates and free-form rivals as blocks of columns.
 
+use std::collections::BTreeSet;
+
 use plumbline_effects::measurements::Measurements;
 use plumbline_effects::{Effect, Kind};
 
@@ -22,13 +24,32 @@ pub(super) struct Block {
     pub is_of_all: bool,
     /// Whether its value is never negative.
     pub is_one_sided: bool,
-    /// Whether it turns the right eye sideways or shifts its image in the course of time: such act alike, and two
-    /// of them would cancel each other.
-    pub grows_sideways: bool,
+    /// What it does alike with others in the course of time.
+    pub grows: Option<Grows>,
     /// Number of its name. Two blocks of one name (shapes of one effect) are never in together.
     pub name: usize,
     /// How much it is trusted beforehand, log of the odds.
     pub log_prior: f64,
+}
+
+/// What some do alike in the course of time: two of them would cancel each other, so one is there at most.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Grows {
+    /// The right eye turns sideways, or its image shifts.
+    Sideways,
+    /// The right eye rolls and pitches, or both nod with what carries them, where rows do not tell which.
+    Nodding,
+}
+
+impl Grows {
+    fn of(effect: &Effect, roll_shows: bool) -> Option<Self> {
+        effect.growth()?;
+        match effect.kind {
+            Kind::EyeYaw | Kind::ImageShift => Some(Self::Sideways),
+            Kind::EyeRoll | Kind::CameraMount if !roll_shows => Some(Self::Nodding),
+            _ => None,
+        }
+    }
 }
 
 impl Block {
@@ -37,7 +58,7 @@ impl Block {
     pub fn excludes(&self, other: &Self) -> bool {
         let of_one_kind = self.kind.is_some() && self.kind == other.kind;
         self.name == other.name
-            || self.grows_sideways && other.grows_sideways
+            || self.grows.is_some() && self.grows == other.grows
             || of_one_kind && self.is_family != other.is_family
     }
 
@@ -102,7 +123,9 @@ impl Library {
             options.ruled_out.iter().any(|out| *out == effect.id() || *out == effect.name())
                 || (effect.kind == Kind::ToothRipple && !noise_is_known)
         };
-        Self::with(Effect::candidates(measurements).into_iter().filter(|effect| !ruled_out(effect)).collect())
+        let effects =
+            Effect::candidates(measurements).into_iter().filter(|effect| !ruled_out(effect)).collect();
+        Self::with(effects, measurements.roll_shows())
     }
 
     /// The same with more shapes of these effects, between their neighbors; what is there keeps its place. `None`
@@ -118,11 +141,13 @@ impl Library {
             self.effects.iter().any(same)
         };
         let more: Vec<Effect> = refined.filter(|effect| !is_known(effect)).collect();
-        (!more.is_empty()).then(|| Self::with(self.effects.iter().cloned().chain(more).collect()))
+        (!more.is_empty()).then(|| {
+            Self::with(self.effects.iter().cloned().chain(more).collect(), measurements.roll_shows())
+        })
     }
 
-    /// Of these effects.
-    pub fn with(effects: Vec<Effect>) -> Self {
+    /// Of these effects; `roll_shows`: see [`Measurements::roll_shows`].
+    pub fn with(effects: Vec<Effect>, roll_shows: bool) -> Self {
         let mut names: Vec<String> = vec![];
         let mut blocks: Vec<Block> = vec![];
         let mut start = 0;
@@ -134,8 +159,6 @@ impl Library {
             });
             let len = effect.parameters().len();
             let (kind, is_family) = (Some(effect.kind), effect.is_of_every_site());
-            let is_sideways = matches!(effect.kind, Kind::EyeYaw | Kind::ImageShift);
-            let grows_sideways = effect.growth().is_some() && is_sideways;
             let is_of_all = effect.kind == Kind::EarlyLog && effect.site.is_empty();
             let is_one_sided = len == 1 && (effect.kind.is_one_sided() || is_of_all);
             blocks.push(Block {
@@ -145,7 +168,7 @@ impl Library {
                 is_family,
                 is_of_all,
                 is_one_sided,
-                grows_sideways,
+                grows: Grows::of(effect, roll_shows),
                 name,
                 log_prior: 0.0,
             });
@@ -153,8 +176,15 @@ impl Library {
         }
         let mut shapes = vec![0_usize; names.len()];
         blocks.iter().for_each(|block| shapes[block.name] += 1);
-        // One expected effect in all; an effect with many shapes is not more probable for it.
-        let odds = 1.0 / (names.len() as f64).max(2.0);
+        // One expected effect in all; an effect with many shapes is not more probable for it, and all others are not less so
+        // for a name that rows do not tell from another one.
+        let nodding: BTreeSet<usize> = blocks
+            .iter()
+            .filter(|block| block.grows == Some(Grows::Nodding))
+            .map(|block| block.name)
+            .collect();
+        let told = names.len() - nodding.len().saturating_sub(1);
+        let odds = 1.0 / (told as f64).max(2.0);
         for (block, effect) in blocks.iter_mut().zip(&effects) {
             let alone = effect.kind == Kind::EarlyLog && !effect.site.is_empty();
             let many = match (effect.is_of_every_site(), alone) {
@@ -186,7 +216,7 @@ mod tests {
         let rig = Rig::built_in("nico").expect("comes along");
         let arm = Arm::of_rig(&rig, "right_index_tip").expect("an arm");
         let of = |kind: Kind| Effect::sites(kind, Some(&arm), None);
-        let library = Library::with([of(Kind::JointZero), of(Kind::AxisSkew)].concat());
+        let library = Library::with([of(Kind::JointZero), of(Kind::AxisSkew)].concat(), true);
         let place = |kind: Kind, family: bool| {
             let wanted = |effect: &Effect| effect.kind == kind && effect.is_of_every_site() == family;
             &library.blocks[library.effects.iter().position(wanted).expect("in the library")]
@@ -197,10 +227,30 @@ mod tests {
     }
 
     #[test]
+    fn one_eye_that_nods_and_both_are_one_where_rows_do_not_tell_which() {
+        let rig = Rig::built_in("nico").expect("comes along");
+        let eyes = plumbline_effects::eyes::Eyes::of_rig(&rig).expect("eyes");
+        let of = |kind: Kind, grows: bool| {
+            let effect = Effect::sites(kind, None, Some(&eyes)).swap_remove(0);
+            if grows { effect.with_shape(Some(Effect::late_growth(300.0, 0.0))) } else { effect }
+        };
+        let all =
+            [(Kind::EyeRoll, true), (Kind::CameraMount, true), (Kind::EyeRoll, false), (Kind::EyeYaw, true)];
+        let library =
+            |roll_shows| Library::with(all.map(|(kind, grows)| of(kind, grows)).to_vec(), roll_shows).blocks;
+        let (told, alike) = (library(true), library(false));
+        assert!(!told[0].excludes(&told[1]) && alike[0].excludes(&alike[1]) && alike[1].excludes(&alike[0]));
+        // What does not grow, and what turns sideways, is another thing.
+        assert!(!alike[1].excludes(&alike[2]) && !alike[0].excludes(&alike[3]));
+        // An eye that turns is no less probable for it.
+        assert!(alike[3].log_prior > told[3].log_prior);
+    }
+
+    #[test]
     fn an_eye_that_was_knocked_again_and_again_follows_something_else() {
         let rig = Rig::built_in("nico").expect("comes along");
         let eyes = plumbline_effects::eyes::Eyes::of_rig(&rig).expect("eyes");
-        let yaw = Library::with(Effect::sites(Kind::EyeYaw, None, Some(&eyes))).blocks.swap_remove(0);
+        let yaw = Library::with(Effect::sites(Kind::EyeYaw, None, Some(&eyes)), true).blocks.swap_remove(0);
         let of = |name: usize, kind: Kind| Block { name, kind: Some(kind), ..yaw.clone() };
         let blocks = [Kind::EyeYaw, Kind::EyeKnock, Kind::EyeKnock, Kind::EyeKnock];
         let blocks: Vec<Block> = blocks.into_iter().enumerate().map(|(k, kind)| of(k, kind)).collect();
@@ -214,7 +264,7 @@ mod tests {
     fn one_joint_logged_early_is_rare_alone_and_usual_beside_all() {
         let rig = Rig::built_in("nico").expect("comes along");
         let arm = Arm::of_rig(&rig, "right_index_tip").expect("an arm");
-        let library = Library::with(Effect::sites(Kind::EarlyLog, Some(&arm), None));
+        let library = Library::with(Effect::sites(Kind::EarlyLog, Some(&arm), None), true);
         let place = |of_all: bool| {
             library.blocks.iter().position(|block| block.is_of_all == of_all).expect("in the library")
         };

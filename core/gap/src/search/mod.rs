@@ -50,7 +50,7 @@ use library::Library;
 use look::Look;
 pub(crate) use naming::{BEYOND_PLAUSIBLE, BOUND, MOST_DIRT};
 use refit::refit;
-pub(crate) use stated::Source;
+pub(crate) use stated::still_right;
 pub(crate) use unknown::RIVAL_P;
 
 /// Times that the model is linearized anew, at the effects found before.
@@ -175,6 +175,13 @@ pub(crate) fn search(
             let next = floor.refitted(&measurements.rows, &left, columns);
             quieter = next.shrunk_to(&floor) < QUIETER;
             if quieter {
+                floor = next;
+            }
+        } else if round + 1 < rounds {
+            let left = crate::compare::residuals(measurements, &fitted.assumed);
+            let next = crate::compare::by_neighbors_of_eyes(measurements, &floor, &left);
+            if let Some(next) = next.filter(|next| next.shrunk_to(&floor) < QUIETER) {
+                quieter = true;
                 floor = next;
             }
         }

@@ -8,7 +8,7 @@ use super::field::log_sum;
 use super::library::{Block, Library, together};
 use super::look::Look;
 use super::many::Many;
-use super::stated::Source;
+use super::stated::still_right;
 use super::unknown::{RIVAL_P, VETO_P};
 use crate::finding::{ClassMember, FoundParameter, NamedEffect, Verdict};
 use crate::floor::Floor;
@@ -34,6 +34,8 @@ const CANCELLING: f64 = 1.5;
 const CANCELLING_OF_EYES: f64 = 4.0;
 /// So many effects of the eyes that each do more than the whole gap are no coincidence.
 const MANY_CANCELLING: usize = 3;
+/// An eye that was knocked while so many sets were measured follows something else that changed from set to set.
+const MANY_KNOCKS: usize = 3;
 /// Beyond this many usual sizes a fit is at its bound.
 pub(crate) const BOUND: f64 = 3.0;
 /// Why such a fit is not added.
@@ -123,7 +125,10 @@ impl Evidence<'_> {
         let is_dirt = p_value >= RIVAL_P && self.look.gap() < MOST_DIRT;
         let nameless = found.is_empty() && self.p_bare() < VETO_P && self.look.gap() > NO_DIRT && !is_dirt;
         let unknown = unknown.max(if nameless { 0.6 } else { 0.0 });
-        let unknown = unknown.max(if self.cancel_each_other(&top) { 0.95 } else { 0.0 });
+        let knocks =
+            found.iter().filter(|one| self.look.blocks[one.block].kind == Some(Kind::EyeKnock)).count();
+        let is_other = self.cancel_each_other(&top) || knocks >= MANY_KNOCKS;
+        let unknown = unknown.max(if is_other { 0.95 } else { 0.0 });
         // One of every joint is more than one thing, and of what is left of each other no more than one is there.
         let families = found.iter().filter(|one| self.look.blocks[one.block].is_family).count();
         let there: f64 = found.iter().map(|one| one.share).sum();
@@ -141,7 +146,6 @@ impl Evidence<'_> {
             Verdict::Class
         };
         for Candidate { block, effect, share } in &mut found {
-            let source = Source::of(self.library.effects[*block].kind);
             if let Some((many, probability)) = many {
                 let stands_out = probability * self.stands_out_of(many, *block);
                 let beside = |few: f64| (1.0 - probability) * few + stands_out;
@@ -151,8 +155,8 @@ impl Evidence<'_> {
                 effect.runner_up = None;
             }
             // Beside something unknown a name is less sure than it looks, be it probable or not.
-            effect.probability *= *share * source.still_right(unknown);
-            effect.class_probability *= source.still_right(unknown);
+            effect.probability *= *share * still_right(unknown);
+            effect.class_probability *= still_right(unknown);
         }
         let many = many.map(|(_, probability)| probability);
         let (blocks, effects) = found.into_iter().map(|one| (one.block, one.effect)).unzip();
