@@ -1,5 +1,7 @@
 //! From sets with probabilities to names, classes and a verdict.
 
+use std::collections::HashSet;
+
 use nalgebra::DMatrix;
 use plumbline_effects::{Effect, Kind};
 
@@ -221,7 +223,17 @@ impl Evidence<'_> {
     fn without_rest(&self, found: &[Candidate], names: &[f64]) -> Option<Vec<Candidate>> {
         let (first, others) = self.explored.models.split_first()?;
         let name = |one: &Candidate| self.look.blocks[one.block].name;
-        let near = others.iter().filter(|model| model.probability * SAME_CLASS_ODDS > first.probability);
+        // Of the hundreds of time constants that say the same, the most probable one speaks.
+        let mut told = HashSet::new();
+        let mut is_new = |model: &&Model| {
+            let own: Vec<usize> =
+                self.of_library(model).into_iter().map(|block| self.look.blocks[block].name).collect();
+            told.insert(own)
+        };
+        let near = others
+            .iter()
+            .take_while(|model| model.probability * SAME_CLASS_ODDS > first.probability)
+            .filter(|model| is_new(model));
         let mut all = near.map(|model| self.names_of(&self.of_library(model), names));
         let has_all =
             |other: &[Candidate]| found.iter().all(|own| other.iter().any(|one| name(one) == name(own)));
