@@ -144,7 +144,7 @@ pub(crate) fn still_structured(found: &mut Found, used: &Measurements, compared:
     }
     found.unexplained.depends_on.retain(|known| known.on != structure.on);
     let share = 1.0 - structure.left.iter().copied().fold(1.0, f64::min);
-    let of = "spread of repeats".to_owned();
+    let of = structure.of.to_owned();
     found.unexplained.depends_on.insert(0, Dependence { on: structure.on, of, share, formula: None });
     misled(found, 0.95);
 }

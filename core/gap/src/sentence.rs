@@ -108,14 +108,7 @@ fn not_in_library(finding: &Finding) -> String {
             "The mean error is {before}, how much of it is noise is not known (too little was measured twice)"
         )
     };
-    let article = |on: &str| if on.starts_with("where ") { on.to_owned() } else { format!("the {on}") };
-    let depends: Vec<String> = finding
-        .unexplained
-        .depends_on
-        .iter()
-        .map(|on| article(on.on.trim_start_matches("the ")))
-        .take(2)
-        .collect();
+    let depends = told_once(finding.unexplained.depends_on.iter().map(|on| on.on.as_str()));
     let on = if depends.is_empty() {
         String::new()
     } else {
@@ -287,12 +280,30 @@ fn capital(text: &str) -> String {
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
+/// What the rest depends on, the first two: several things may depend on one, which is told once.
+fn told_once<'a>(on: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let article = |on: &str| if on.starts_with("where ") { on.to_owned() } else { format!("the {on}") };
+    let mut told: Vec<String> = vec![];
+    for on in on.map(|on| article(on.trim_start_matches("the "))) {
+        if told.len() < 2 && !told.contains(&on) {
+            told.push(on);
+        }
+    }
+    told
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn found(name: &str, value: f64, low: f64, high: f64) -> FoundParameter {
         FoundParameter { name: name.to_owned(), value, low, high, text: None }
+    }
+
+    #[test]
+    fn what_several_things_depend_on_is_told_once() {
+        let all = ["time", "time", "where the elbow came from", "angle of the elbow"];
+        assert_eq!(told_once(all.into_iter()), ["the time", "where the elbow came from"]);
     }
 
     #[test]

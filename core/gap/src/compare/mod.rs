@@ -16,6 +16,7 @@ mod poses;
 mod sets;
 mod spread;
 mod structure;
+mod sway;
 mod turns;
 mod units;
 

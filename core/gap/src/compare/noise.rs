@@ -15,6 +15,7 @@ use super::drift::{Deviation, Drift, drift};
 use super::levers::levers;
 use super::neighbors::Points;
 use super::structure::{Repeat, Structure, structure, wobble};
+use super::sway::sway;
 use crate::finding::FloorSource;
 use crate::floor::{Floor, KindFloor, finest};
 use crate::statistics::{ALIKE, median, robust_sd, stepped_sd};
@@ -243,7 +244,7 @@ fn within_cells(
     Some((KindFloor { what, sd, degrees_of_freedom: free, sigma_m: None }, course))
 }
 
-/// What repeats of any kind still depend on under a model with these residuals: the largest.
+/// What repeats of any kind, or poses without any, still depend on under a model with these residuals: the largest.
 pub fn structure_of(
     measurements: &Measurements,
     assumed: &Assumed,
@@ -253,7 +254,9 @@ pub fn structure_of(
         if let Some(wobble) = watched_wobble(measurements, residuals, what) {
             return Some(wobble);
         }
-        let (repeats, course) = within_cells(measurements, residuals, what)?;
+        let Some((repeats, course)) = within_cells(measurements, residuals, what) else {
+            return sway(measurements, residuals, what);
+        };
         let course = course.map(|course| Structure::new("time".to_owned(), course.p_value, course.left));
         let other = structure_within(measurements, assumed, residuals, what, repeats.degrees_of_freedom);
         course.into_iter().chain(other).max_by(|a, b| a.size_sigmas.total_cmp(&b.size_sigmas))

@@ -45,6 +45,8 @@ pub struct Repeat {
 /// What repeats depend on.
 #[derive(Clone, Debug)]
 pub struct Structure {
+    /// For people: what depends.
+    pub of: &'static str,
     /// For people: "time", "where the elbow came from".
     pub on: String,
     /// Probability by chance, of all that was tried.
@@ -60,7 +62,7 @@ impl Structure {
     pub fn new(on: String, p_value: f64, left: Vec<f64>) -> Self {
         let explained = left.iter().map(|left| (1.0 - left).max(0.0) / left.max(1e-12));
         let size_sigmas = (explained.sum::<f64>() / left.len().max(1) as f64).sqrt();
-        Self { on, p_value, size_sigmas, left }
+        Self { of: "spread of repeats", on, p_value, size_sigmas, left }
     }
 }
 
