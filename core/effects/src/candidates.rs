@@ -106,7 +106,7 @@ impl Known {
 }
 
 impl Measurements {
-    /// Whether what was seen of things that were watched tells an eye that rolls and pitches from both that nod.
+    /// Whether what was seen tells an eye that rolls and pitches from both that nod.
     pub fn roll_shows(&self) -> bool {
         let of_eyes: Vec<&Observation> = self.rows.iter().filter(|row| !row.what.is_placed()).collect();
         self.has(What::EyePoints) || places(&of_eyes) >= ROLL_SHOWS_AT
@@ -126,10 +126,13 @@ impl Measurements {
     }
 }
 
-/// At how many places things were watched.
+/// At how many places things were seen, as many as it takes.
 fn places(rows: &[&Observation]) -> usize {
     let mut known: Vec<nalgebra::Point3<f64>> = vec![];
-    for at in rows.iter().filter(|row| row.stand.is_some()).filter_map(|row| row.truth_m) {
+    for at in rows.iter().filter_map(|row| row.truth_m) {
+        if known.len() == ROLL_SHOWS_AT {
+            break;
+        }
         if known.iter().all(|other| (other - at).norm() > SAME_PLACE_M) {
             known.push(at);
         }

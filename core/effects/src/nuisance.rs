@@ -15,7 +15,7 @@ const FRAME_SD: f64 = 0.5;
 const MOUNT_SD_M: f64 = 0.05;
 /// … and is turned against where it was found at first by this, rad.
 const MOUNT_SD_RAD: f64 = 0.5;
-/// What is constant of a stand beforehand: bearings (tangents) and baseline over depth.
+/// What is constant of a stand beforehand: bearings and the angle between both rays.
 const OFFSET_SD: f64 = 0.2;
 
 /// One direction in which something moves that is found along with the effects.

@@ -133,7 +133,8 @@ pub(crate) fn bound_by_own_rows(found: &mut Found, used: &Measurements) {
 /// Where repeats still depend on something that was logged, with all that was found in the model, that is
 /// not explained, and no noise.
 pub(crate) fn still_structured(found: &mut Found, used: &Measurements, compared: &Compared) {
-    let of = |model: &Assumed| compare::structure_of(used, model, &compare::residuals(used, model));
+    let is_told = found.floor.source != FloorSource::Fitted;
+    let of = |model: &Assumed| compare::structure_of(used, model, &compare::residuals(used, model), is_told);
     let Some(structure) = of(&found.assumed) else { return };
     // A small step is known although it is too small for a name.
     if of(&found.probable).is_none() {

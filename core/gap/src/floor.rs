@@ -15,6 +15,13 @@ pub(crate) fn finest(unit: Unit) -> f64 {
     }
 }
 
+/// How many times larger noise is than what a fit of so many columns leaves of it.
+pub(crate) fn of_freedom(residuals: &[Option<Vec<f64>>], columns: usize) -> f64 {
+    let total: usize = residuals.iter().flatten().map(Vec::len).sum();
+    let free = (total as f64 - columns as f64).max(0.25 * total as f64);
+    (total as f64 / free.max(1.0)).sqrt()
+}
+
 /// Noise of one measurement, per kind and natural coordinate.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Floor {
@@ -59,9 +66,7 @@ impl Floor {
     /// What a model leaves, where nothing else tells the noise. `columns` were fitted to all rows;
     /// never more than it was, since a better model leaves less.
     pub fn refitted(&self, rows: &[Observation], residuals: &[Option<Vec<f64>>], columns: usize) -> Self {
-        let total: usize = residuals.iter().flatten().map(Vec::len).sum();
-        let free = (total as f64 - columns as f64).max(0.25 * total as f64);
-        let inflate = (total as f64 / free.max(1.0)).sqrt();
+        let inflate = of_freedom(residuals, columns);
         let mut next = self.clone();
         for kind in &mut next.kinds {
             let own = || {

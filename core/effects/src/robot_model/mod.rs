@@ -144,6 +144,16 @@ impl RobotModel {
         self.added.effects().iter().any(is_growth)
     }
 
+    /// Whether an effect in force takes off what they turn against each other, which is where depth comes from: that both nod,
+    /// or one rolls, says nothing of it.
+    pub fn has_growth_apart(&self) -> bool {
+        let is_apart = |effect: &ModelEffect| {
+            let kind = Kind::of_id(&effect.id).filter(|kind| kind.is_growth_of_eyes(effect.shape));
+            matches!(kind, Some(Kind::EyeYaw | Kind::ImageShift))
+        };
+        self.added.effects().iter().any(is_apart)
+    }
+
     /// For people, short: "as described", "with 2 effects", "with 2 effects and small shares".
     pub fn title(&self) -> String {
         let effects = |count: usize| plumbline_model::counted(count, "effect");

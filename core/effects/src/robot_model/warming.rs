@@ -54,14 +54,14 @@ impl RobotModel {
     /// How far the eyes usually have turned since they were calibrated, or were seen to have. Nothing is usual where an
     /// effect in force says it, and where nobody knows how long they have been on, now or then.
     pub fn turned_since(&self, seen: &SeenUnder) -> Turned {
-        let on_s = seen.t_secs.filter(|_| !self.has_growth_of_eyes());
         let calibrated_at = &self.rig.eyes.calibrated_at;
         let usual = typical(Kind::EyeYaw, "yaw_rad");
-        let since = |then_s: Option<f64>| {
+        let since = |then_s: Option<f64>, is_corrected: bool| {
+            let on_s = seen.t_secs.filter(|_| !is_corrected);
             let share = on_s.zip(then_s).map(|(on_s, then_s)| warm_share(on_s) - warm_share(then_s));
             share.map_or(0.0, |share| usual * share.abs())
         };
-        let apart_rad = since(calibrated_at.cameras_s).max(seen.apart_rad);
-        Turned { apart_rad, together_rad: since(calibrated_at.mount_s) }
+        let apart_rad = since(calibrated_at.cameras_s, self.has_growth_apart()).max(seen.apart_rad);
+        Turned { apart_rad, together_rad: since(calibrated_at.mount_s, self.has_growth_of_eyes()) }
     }
 }

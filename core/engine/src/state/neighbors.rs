@@ -214,7 +214,7 @@ impl Neighbors<EyesWorkflow> for State {
             arm_moves: self.arm_of == world && self.arm_comes_first(),
             is_watched: self.rooms.drift.is_watching(),
             drifted: self.drifted().filter(|_| self.shown == world),
-            is_corrected: self.models.of(world).has_growth_of_eyes(),
+            is_corrected: self.models.of(world).has_growth_apart(),
         }
     }
 

@@ -17,7 +17,7 @@ use super::neighbors::Points;
 use super::structure::{Repeat, Structure, structure, wobble};
 use super::sway::sway;
 use crate::finding::FloorSource;
-use crate::floor::{Floor, KindFloor, finest};
+use crate::floor::{Floor, KindFloor, finest, of_freedom};
 use crate::statistics::{ALIKE, median, robust_sd, stepped_sd};
 
 /// Fewer degrees of freedom than this say too little of the spread: 20 know it to a sixth. What
@@ -120,22 +120,28 @@ pub fn floor_of(measurements: &Measurements, assumed: &Assumed, residuals: &[Opt
 }
 
 /// What near neighbors say of the noise of eyes under a model with these residuals, where they told it; never more than it was.
-/// What a mount that sits elsewhere does bends so much over a table that planes through neighbors leave some of it.
+/// What a mount that sits elsewhere does bends so much over a table that planes through neighbors leave some of it. `columns` were
+/// fitted to all rows.
 pub fn by_neighbors_of_eyes(
     measurements: &Measurements,
     floor: &Floor,
     residuals: &[Option<Vec<f64>>],
+    columns: usize,
 ) -> Option<Floor> {
     let bends = measurements.rows.iter().all(|row| !row.what.is_placed() && row.stand.is_none());
     if floor.source != FloorSource::Neighbors || !bends {
         return None;
     }
+    let inflate = of_freedom(residuals, columns);
     let mut next = floor.clone();
     for kind in &mut next.kinds {
+        if within_cells(measurements, residuals, kind.what).is_some() {
+            continue;
+        }
         let nearby = near_neighbors(measurements, residuals, kind.what);
         let units = kind.what.coordinates().iter().map(|(_, unit)| finest(*unit));
         let all = kind.sd.iter_mut().zip(&nearby.sd).zip(units);
-        all.for_each(|((sd, own), finest)| *sd = sd.min(own.max(finest)));
+        all.for_each(|((sd, own), finest)| *sd = sd.min((inflate * own).max(finest)));
     }
     Some(next)
 }
@@ -244,18 +250,20 @@ fn within_cells(
     Some((KindFloor { what, sd, degrees_of_freedom: free, sigma_m: None }, course))
 }
 
-/// What repeats of any kind, or poses without any, still depend on under a model with these residuals: the largest.
+/// What repeats of any kind still depend on under a model with these residuals, or, where the noise is not told (`is_told`), poses
+/// without any: the largest.
 pub fn structure_of(
     measurements: &Measurements,
     assumed: &Assumed,
     residuals: &[Option<Vec<f64>>],
+    is_told: bool,
 ) -> Option<Structure> {
     let of = |what: What| -> Option<Structure> {
         if let Some(wobble) = watched_wobble(measurements, residuals, what) {
             return Some(wobble);
         }
         let Some((repeats, course)) = within_cells(measurements, residuals, what) else {
-            return sway(measurements, residuals, what);
+            return if is_told { None } else { sway(measurements, residuals, what) };
         };
         let course = course.map(|course| Structure::new("time".to_owned(), course.p_value, course.left));
         let other = structure_within(measurements, assumed, residuals, what, repeats.degrees_of_freedom);

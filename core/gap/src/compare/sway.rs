@@ -4,6 +4,8 @@
 //! or more over the session, common to all poses, is looked for as where one thing is watched. An arm that goes from
 //! place to place in small steps would show what it errs by as such a wave; poses that come in any order do not.
 
+use std::collections::BTreeMap;
+
 use nalgebra::Vector3;
 use plumbline_effects::measurements::{Measurements, What};
 
@@ -13,22 +15,23 @@ use crate::statistics::median;
 /// From one pose to the next an arm goes at least this share of what lies between any two of its poses, else place and time go
 /// together.
 const ANY_ORDER: f64 = 0.7;
+/// What is said to go with the time.
+const OF_ALL: &str = "all that was measured";
 /// Fewer poses than this say nothing.
 const FEWEST: usize = 30;
 
-/// What of poses of one kind goes with the time under a model with these residuals, with what is said of it.
+/// What of poses of one kind goes with the time under a model with these residuals, in the session with most of them.
 pub fn sway(measurements: &Measurements, residuals: &[Option<Vec<f64>>], what: What) -> Option<Structure> {
-    let session = measurements.rows.iter().find(|row| row.what == what)?.session;
-    let mut timed: Vec<(f64, Vector3<f64>, &Vec<f64>)> = vec![];
-    for (row, residual) in measurements.rows.iter().zip(residuals) {
-        if row.what == what && row.session == session {
-            let at = Vector3::from_column_slice(row.measured.get(..3)?);
-            timed.push((row.t_secs?, at, residual.as_ref()?));
-        }
-    }
-    if timed.len() < FEWEST || !what.is_pose() {
+    if !what.is_pose() {
         return None;
     }
+    let mut sessions = BTreeMap::<usize, Vec<(f64, Vector3<f64>, &Vec<f64>)>>::new();
+    for (row, residual) in measurements.rows.iter().zip(residuals).filter(|(row, _)| row.what == what) {
+        if let (Some(t_secs), [x, y, z, ..], Some(residual)) = (row.t_secs, &row.measured[..], residual) {
+            sessions.entry(row.session).or_default().push((t_secs, Vector3::new(*x, *y, *z), residual));
+        }
+    }
+    let mut timed = sessions.into_values().max_by_key(Vec::len).filter(|timed| timed.len() >= FEWEST)?;
     timed.sort_by(|a, b| a.0.total_cmp(&b.0));
     if !come_in_any_order(&timed.iter().map(|(_, at, _)| *at).collect::<Vec<_>>()) {
         return None;
@@ -36,25 +39,23 @@ pub fn sway(measurements: &Measurements, residuals: &[Option<Vec<f64>>], what: W
     let count = timed.len() as f64;
     let mean = |c: usize| timed.iter().map(|(.., residual)| residual[c]).sum::<f64>() / count;
     let means: Vec<f64> = (0..what.len()).map(mean).collect();
-    let rows: Vec<Repeat> = timed
-        .iter()
-        .map(|(t_secs, _, residual)| Repeat {
-            cell: 0,
-            when: *t_secs,
-            turned_rad: vec![],
-            temperature_c: None,
-            at: None,
-            off: residual.iter().zip(&means).map(|(value, mean)| value - mean).collect(),
-            levers: vec![],
-        })
-        .collect();
-    wobble(&rows, count - 1.0).map(|found| Structure { of: "all that was measured", ..found })
+    let one = |(t_secs, _, residual): &(f64, Vector3<f64>, &Vec<f64>)| Repeat {
+        cell: 0,
+        when: *t_secs,
+        turned_rad: vec![],
+        temperature_c: None,
+        at: None,
+        off: residual.iter().zip(&means).map(|(value, mean)| value - mean).collect(),
+        levers: vec![],
+    };
+    let rows: Vec<Repeat> = timed.iter().map(one).collect();
+    wobble(&rows, count - 1.0).map(|found| Structure { of: OF_ALL, ..found })
 }
 
+/// Whether an arm goes nearly as far from one pose to the next as between any two.
 fn come_in_any_order(at: &[Vector3<f64>]) -> bool {
     let steps = median(at.windows(2).map(|pair| (pair[1] - pair[0]).norm()));
-    let half = at.len() / 2;
-    let apart = median((0..at.len()).map(|i| (at[i] - at[(i + half) % at.len()]).norm()));
+    let apart = median((0..at.len()).flat_map(|i| at[..i].iter().map(move |other| (at[i] - other).norm())));
     steps.zip(apart).is_some_and(|(steps, apart)| steps > ANY_ORDER * apart)
 }
 
@@ -79,5 +80,10 @@ mod tests {
         assert!(come_in_any_order(&places(|i| (i * 37) % 60)));
         assert!(!come_in_any_order(&places(|i| i)));
         assert!(!come_in_any_order(&[]));
+        // A way that is gone twice, and a raster whose columns are far apart.
+        let twice: Vec<Vector3<f64>> = [places(|i| i), places(|i| i)].concat();
+        assert!(!come_in_any_order(&twice));
+        let raster = (0..40).map(|i| Vector3::new(0.08 * f64::from(i % 5), 0.025 * f64::from(i / 5), 0.0));
+        assert!(!come_in_any_order(&raster.collect::<Vec<_>>()));
     }
 }

@@ -98,7 +98,9 @@ impl Finish<'_> {
         let undetermined = undetermined(self.measurements, &assumed.effects, &doubt.covariance, &sds);
         let hypotheses = self.hypotheses(&assumed, named.many.is_some(), context)?;
         let after = self.misses(&assumed, context)?;
-        let share = share_left(&bare.misses, &after, &fitted.weights, doubt.noise_scale);
+        // The noise may have been taken anew since.
+        let before = self.misses(&bare.assumed, context)?;
+        let share = share_left(&before, &after, &fitted.weights, doubt.noise_scale);
         let unexplained = Unexplained {
             p_value: named.p_value,
             probability: named.unknown,
@@ -308,18 +310,14 @@ fn floor_m(measurements: &Measurements, floor: &Floor) -> f64 {
         What::Pose | What::OrientedPose => length(&kind.sd[..3]),
         What::EyePoints => length(&kind.sd),
         What::Place => {
-            let depths = measurements.rows.iter().filter(|row| row.what == What::Place).filter_map(|row| {
+            let lengths = measurements.rows.iter().filter(|row| row.what == What::Place).filter_map(|row| {
                 let eyes = measurements.apparatus(row).eyes.as_ref()?;
-                Some(eyes.place(&row.measured)?.z / eyes.cameras.baseline_m())
+                let range_m = eyes.place(&row.measured)?.coords.norm();
+                // Across the ray; along it both rays meet the farther off the flatter they do.
+                let along_m = range_m / row.measured.get(2)?.sin();
+                Some((range_m * kind.sd[0].hypot(kind.sd[1])).hypot(along_m * kind.sd[2]))
             });
-            // Across the view; along it the error is larger by depth over baseline.
-            let far = crate::compare::median(depths).unwrap_or(0.0);
-            let baseline = measurements
-                .apparatuses
-                .iter()
-                .find_map(|a| a.eyes.as_ref())
-                .map_or(0.0, |e| e.cameras.baseline_m());
-            far * baseline * kind.sd[0].hypot(kind.sd[1]).hypot(far * kind.sd[2])
+            crate::compare::median(lengths).unwrap_or(0.0)
         }
     }
 }

@@ -79,6 +79,10 @@ const ONE_LOGGED_EARLY: f64 = 0.002;
 /// shapes are for robots whose rows say so.
 const LOAD_AS_DESCRIBED: f64 = 0.85;
 
+/// How probable it is that what is off about eyes is so all the while, where the rows could show one that grows as they warm up:
+/// a grid of a few minutes shows the dozen time constants that are tried for one thing.
+const CONSTANT: f64 = 0.7;
+
 /// Beside all of them it is usual: a joint that carries more settles later, so more of its way was left.
 const ONE_LATER_THAN_ALL: f64 = 0.3;
 
@@ -175,7 +179,11 @@ impl Library {
             start += len;
         }
         let mut shapes = vec![0_usize; names.len()];
-        blocks.iter().for_each(|block| shapes[block.name] += 1);
+        let mut growths = vec![0_usize; names.len()];
+        for (block, effect) in blocks.iter().zip(&effects) {
+            shapes[block.name] += 1;
+            growths[block.name] += usize::from(effect.growth().is_some());
+        }
         // One expected effect in all; an effect with many shapes is not more probable for it, and all others are not less so
         // for a name that rows do not tell from another one.
         let nodding: BTreeSet<usize> = blocks
@@ -193,9 +201,13 @@ impl Library {
                 (false, false) => 1.0,
             };
             let others = shapes[block.name] - 1;
+            let growing = growths[block.name];
+            let may_grow = growing > 0 && growing <= others;
             let share = match (effect.kind, effect.shape) {
                 (Kind::GravityBacklash, None) if others > 0 => LOAD_AS_DESCRIBED,
                 (Kind::GravityBacklash, Some(_)) => (1.0 - LOAD_AS_DESCRIBED) / others.max(1) as f64,
+                _ if may_grow && effect.growth().is_none() => CONSTANT / (others + 1 - growing) as f64,
+                _ if may_grow => (1.0 - CONSTANT) / growing as f64,
                 _ => 1.0 / (others + 1) as f64,
             };
             block.log_prior = (many * odds * share).ln();

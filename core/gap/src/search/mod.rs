@@ -168,18 +168,14 @@ pub(crate) fn search(
         if !same {
             fitted = refit(measurements, &floor, &fitted.assumed, &effects, context)?;
         }
-        if floor.source == FloorSource::Fitted && round + 1 < rounds {
+        if round + 1 < rounds {
             let columns = measurements.nuisances().len()
                 + effects.iter().map(|effect| effect.parameters().len()).sum::<usize>();
             let left = crate::compare::residuals(measurements, &fitted.assumed);
-            let next = floor.refitted(&measurements.rows, &left, columns);
-            quieter = next.shrunk_to(&floor) < QUIETER;
-            if quieter {
-                floor = next;
-            }
-        } else if round + 1 < rounds {
-            let left = crate::compare::residuals(measurements, &fitted.assumed);
-            let next = crate::compare::by_neighbors_of_eyes(measurements, &floor, &left);
+            let next = match floor.source {
+                FloorSource::Fitted => Some(floor.refitted(&measurements.rows, &left, columns)),
+                _ => crate::compare::by_neighbors_of_eyes(measurements, &floor, &left, columns),
+            };
             if let Some(next) = next.filter(|next| next.shrunk_to(&floor) < QUIETER) {
                 quieter = true;
                 floor = next;

@@ -37,7 +37,7 @@ const CANCELLING_OF_EYES: f64 = 4.0;
 /// So many effects of the eyes that each do more than the whole gap are no coincidence.
 const MANY_CANCELLING: usize = 3;
 /// An eye that was knocked while so many sets were measured follows something else that changed from set to set.
-const MANY_KNOCKS: usize = 3;
+const MANY_KNOCKS: usize = 4;
 /// Beyond this many usual sizes a fit is at its bound.
 pub(crate) const BOUND: f64 = 3.0;
 /// Why such a fit is not added.
@@ -226,8 +226,10 @@ impl Evidence<'_> {
         // Of the hundreds of time constants that say the same, the most probable one speaks.
         let mut told = HashSet::new();
         let mut is_new = |model: &&Model| {
-            let own: Vec<usize> =
-                self.of_library(model).into_iter().map(|block| self.look.blocks[block].name).collect();
+            let said =
+                |block: usize| (self.look.blocks[block].name, self.library.effects[block].growth().is_some());
+            let mut own: Vec<(usize, bool)> = self.of_library(model).into_iter().map(said).collect();
+            own.sort_unstable();
             told.insert(own)
         };
         let near = others

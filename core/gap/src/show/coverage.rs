@@ -5,19 +5,17 @@ use plumbline_effects::Measurements;
 use plumbline_effects::measurements::Observation;
 
 use crate::compare::NORMAL_95;
-use crate::floor::Floor;
 use crate::search::Found;
 
 /// Number of coordinates of a row inside of their predicted 95 % interval, and their number.
 pub(super) fn inside_95(
     measurements: &Measurements,
     row: &Observation,
-    floor: &Floor,
     found: &Found,
 ) -> Option<(usize, usize)> {
     let doubt = &found.doubt;
     let tangents = measurements.tangents(row, &found.assumed, &doubt.effects)?;
-    let floor = floor.of(row.what)?;
+    let floor = found.floor.of(row.what)?;
     let own = tangents.effects.ncols();
     let size = tangents.predicted.len();
     let mut spread = DMatrix::zeros(size, size);

@@ -179,7 +179,7 @@ fn without(
                     None => None,
                 },
                 noise: noise_of(measurements, row, &found.assumed, &compared.floor, scale)?,
-                inside: coverage::inside_95(measurements, row, &compared.floor, &found)?,
+                inside: coverage::inside_95(measurements, row, &found)?,
             })
         })
         .collect())
