@@ -511,3 +511,17 @@ fn a_choice_has_a_key_of_its_own_beside_the_number() {
         assert_eq!((choice.name.as_str(), choice.text.as_deref()), ("which", Some(which)));
     }
 }
+
+#[test]
+fn what_grows_as_eyes_warm_up_says_so_and_what_is_constant_does_not() {
+    let measurements = everything(24);
+    let eyes = measurements.apparatuses.iter().find_map(|apparatus| apparatus.eyes.as_ref());
+    for kind in [Kind::EyeYaw, Kind::EyeRoll, Kind::ImageShift, Kind::CameraMount] {
+        let constant = Effect::sites(kind, None, eyes).swap_remove(0);
+        let growing = constant.clone().with_shape(Some(Effect::late_growth(300.0, 60.0)));
+        assert_eq!(growing.title, format!("{}, more so as the cameras warm up", constant.title));
+        // Told once, and no more where it does not grow.
+        assert_eq!(growing.clone().with_shape(Some(Effect::late_growth(200.0, 0.0))).title, growing.title);
+        assert_eq!(growing.with_shape(None), constant);
+    }
+}

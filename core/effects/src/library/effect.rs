@@ -46,6 +46,9 @@ pub struct Effect {
 /// At most so many joints have their effects in one.
 const MOST_MEMBERS: usize = 12;
 
+/// Said of what comes as the eyes warm up.
+const GROWS: &str = ", more so as the cameras warm up";
+
 impl Effect {
     /// Every effect that a plan of touches is scored by, at every site of an arm.
     pub fn all(arm: &Arm) -> Vec<Self> {
@@ -95,6 +98,12 @@ impl Effect {
     pub fn with_shape(mut self, shape: Option<f64>) -> Self {
         self.shape = shape;
         self.shape_range = None;
+        // What is off about eyes all the while, and what comes as they warm up, want another remedy.
+        let constant = self.title.trim_end_matches(GROWS);
+        self.title = match self.kind.is_growth_of_eyes(shape) {
+            true => format!("{constant}{GROWS}"),
+            false => constant.to_owned(),
+        };
         self
     }
 

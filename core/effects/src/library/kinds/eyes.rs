@@ -13,7 +13,7 @@ const SHIFT_ALONG: [Parameter; 1] = [parameter("du_px", 1.5)];
 pub(super) static CAMERA_MOUNT: Entry = Entry {
     about: "eyes sit elsewhere in the head than in the model",
     meaning: "The eyes sit elsewhere on the head than in the model.",
-    remedy: "Check the screws of the eyes; calibrate the mount again.",
+    remedy: "Check the screws of the eyes; let the cameras warm up; calibrate the mount again.",
     parameters: &[
         parameter("x_m", 0.02),
         parameter("y_m", 0.02),
@@ -110,7 +110,7 @@ pub(super) static FOCAL_OR_BASELINE: Entry = Entry {
 pub(super) static EYE_ROLL: Entry = Entry {
     about: "right eye rolled or pitched against the left one",
     meaning: "One eye is rolled or pitched against the other.",
-    remedy: "Check the mounts of the eyes; calibrate the stereo pair again.",
+    remedy: "Check the mounts of the eyes; let the cameras warm up; calibrate the stereo pair again.",
     parameters: &[parameter("roll_rad", 0.01), parameter("pitch_rad", 0.01)],
     sliding: &[],
     site: Site::OfEyes(EyeSite::Right),
