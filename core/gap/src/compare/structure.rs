@@ -89,7 +89,7 @@ pub fn structure(rows: &[Repeat], free: f64, when: &str, joints: &[String]) -> O
     best
 }
 
-/// A wobble over time of things that were watched, beyond doubt: `cell` tells what stood still, and a course that goes
+/// A wobble over time of things that were watched, or of poses, beyond doubt: `cell` tells what stood still, and a course that goes
 /// one way is none. `free`: as in [`structure`].
 pub fn wobble(rows: &[Repeat], free: f64) -> Option<Structure> {
     let width = rows.first()?.off.len();

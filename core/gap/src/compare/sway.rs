@@ -15,6 +15,8 @@ use crate::statistics::median;
 /// From one pose to the next an arm goes at least this share of what lies between any two of its poses, else place and time go
 /// together.
 const ANY_ORDER: f64 = 0.7;
+/// So many poses say how far any two of them lie apart: pairs of thousands would fill the memory.
+const MOST_COMPARED: usize = 300;
 /// What is said to go with the time.
 const OF_ALL: &str = "all that was measured";
 /// Fewer poses than this say nothing.
@@ -55,7 +57,11 @@ pub fn sway(measurements: &Measurements, residuals: &[Option<Vec<f64>>], what: W
 /// Whether an arm goes nearly as far from one pose to the next as between any two.
 fn come_in_any_order(at: &[Vector3<f64>]) -> bool {
     let steps = median(at.windows(2).map(|pair| (pair[1] - pair[0]).norm()));
-    let apart = median((0..at.len()).flat_map(|i| at[..i].iter().map(move |other| (at[i] - other).norm())));
+    let some: Vec<_> = at.iter().step_by(at.len().div_ceil(MOST_COMPARED).max(1)).collect();
+    let apart = median(
+        (0..some.len())
+            .flat_map(|i| some[..i].iter().map(|other| (some[i] - *other).norm()).collect::<Vec<_>>()),
+    );
     steps.zip(apart).is_some_and(|(steps, apart)| steps > ANY_ORDER * apart)
 }
 
