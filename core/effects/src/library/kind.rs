@@ -190,7 +190,7 @@ impl Kind {
     }
 
     /// Whether a robot's description can hold it, as the place of a joint or of the tip.
-    pub(crate) fn is_origin(self) -> bool {
+    pub fn is_origin(self) -> bool {
         self.entry().is(Is::Origin)
     }
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use nalgebra::DVector;
+use nalgebra::{Cholesky, DMatrix, DVector};
 use plumbline_effects::measurements::Measurements;
 use plumbline_effects::{Assumed, Kind};
 use plumbline_model::JobContext;
@@ -36,6 +36,8 @@ const KEPT: usize = 2;
 const PAD_SD_M: f64 = 0.3e-3;
 /// Shapes of one effect whose columns have this cosine do the same.
 const ALIKE: f64 = 0.99;
+/// Keeps columns that are alike from being solved for, share of each.
+const RIDGE: f64 = 1e-6;
 /// Divides log odds: see the README's section on calibration.
 pub(super) const TEMPERATURE: f64 = 2.0;
 
@@ -334,6 +336,13 @@ impl Look {
         (square.max(0.0) / self.total).sqrt()
     }
 
+    /// The same of what a block does that others beside it cannot do as well: two that make up for each other do little.
+    pub fn does_beyond(&self, block: usize, values: &[f64], others: &[usize]) -> f64 {
+        let own: Vec<usize> = self.blocks[block].columns().collect();
+        let beside: Vec<usize> = others.iter().flat_map(|&other| self.blocks[other].columns()).collect();
+        (square_beyond(&self.plain.a, &own, values, &beside) / self.total).sqrt()
+    }
+
     /// Root mean square of what frames alone leave beyond the noise, in floors.
     pub fn gap(&self) -> f64 {
         (self.plain.square / self.total - 1.0).max(0.0).sqrt()
@@ -344,5 +353,48 @@ impl Look {
         (0..self.fields.len())
             .max_by(|&a, &b| explored.variants[a].total_cmp(&explored.variants[b]))
             .unwrap_or(0)
+    }
+}
+
+/// Square of what values of some columns of a gram matrix do beyond the span of others.
+fn square_beyond(gram: &DMatrix<f64>, own: &[usize], values: &[f64], beside: &[usize]) -> f64 {
+    let part = |rows: &[usize], columns: &[usize]| {
+        DMatrix::from_fn(rows.len(), columns.len(), |r, c| gram[(rows[r], columns[c])])
+    };
+    let mut among = part(beside, beside);
+    for k in 0..among.nrows() {
+        among[(k, k)] *= 1.0 + RIDGE;
+    }
+    let values = DVector::from_column_slice(values);
+    let (does, mixed) = (part(own, own), part(beside, own));
+    let taken = match Cholesky::new(among) {
+        Some(among) if !beside.is_empty() => mixed.transpose() * among.solve(&mixed),
+        _ => DMatrix::zeros(own.len(), own.len()),
+    };
+    values.dot(&((does - taken) * &values)).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_makes_up_for_each_other_does_little_beyond_it() {
+        // Columns: one, nearly the same again, and one across.
+        let columns = DMatrix::from_columns(&[
+            DVector::from_vec(vec![1.0, 1.0, 0.0, 0.0]),
+            DVector::from_vec(vec![1.0, 1.0, 0.1, 0.0]),
+            DVector::from_vec(vec![0.0, 0.0, 0.0, 1.0]),
+        ]);
+        let gram = columns.tr_mul(&columns);
+        let alone = square_beyond(&gram, &[1], &[3.0], &[]);
+        assert!((alone - 9.0 * 2.01).abs() < 1e-9, "alone it does what it does: {alone}");
+        assert!(
+            (square_beyond(&gram, &[1], &[3.0], &[2]) - alone).abs() < 1e-9,
+            "what lies across takes nothing"
+        );
+        let beyond = square_beyond(&gram, &[1], &[3.0], &[0, 2]);
+        assert!((beyond - 9.0 * 0.01).abs() < 1e-3, "{beyond}");
+        assert!(square_beyond(&gram, &[0], &[3.0], &[0]) < 1e-4, "itself takes all");
     }
 }

@@ -6,6 +6,8 @@
 //! sure that stand out of all the others.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
+use plumbline_effects::Kind;
+use plumbline_effects::measurements::What;
 use plumbline_model::JobContext;
 use statrs::distribution::{ChiSquared, ContinuousCDF, Discrete, DiscreteCDF, Poisson};
 
@@ -31,6 +33,9 @@ const NAMES_OF_MANY: [f64; 7] = [0.0, 0.0, 0.03, 0.07, 0.2, 0.25, 0.45];
 const EXPECTED_OF_FEW: f64 = 1.0;
 /// An effect stands out of all the others where its values would come from none with less probability than this.
 const STANDS_OUT_P: f64 = 0.01;
+/// Touches on a screen tell zeros, axes, lengths and a tip from each other so little that one of them stands out for what others
+/// do together: of 19 that did beyond doubt in development cases of the blind test 9 were there (132 of 133 of all others).
+const GEOMETRY_BY_TOUCHES: f64 = 0.5;
 
 /// What evidence is made of, with the columns of what is looked through only.
 pub(super) struct Ground {
@@ -147,7 +152,9 @@ impl Evidence<'_> {
         let ones = self.look.allowed.iter().filter(is_one);
         let columns: Vec<usize> = ones.flat_map(|&one| self.look.packed[one].columns()).collect();
         let (values, covariance) = many.values(&columns, own.wider());
-        stands_out(&values, &covariance).unwrap_or(0.0)
+        let touched = self.floor.kinds.iter().any(|kind| kind.what == What::Touch);
+        let most = if touched && own.kind.is_some_and(Kind::is_origin) { GEOMETRY_BY_TOUCHES } else { 1.0 };
+        most * stands_out(&values, &covariance).unwrap_or(0.0)
     }
 }
 

@@ -5,6 +5,7 @@ use plumbline_effects::Kind;
 use super::explore::Model;
 use super::naming::Evidence;
 use super::variants::UNKNOWN_CELL;
+use crate::beforehand::MASS_SD;
 use crate::compare::f_tail;
 use crate::finding::FloorSource;
 
@@ -29,8 +30,10 @@ const FORMULA_SHARE: f64 = RIVAL_SHARE;
 const OPTICS_SHARE: f64 = 0.07;
 /// A drag is right to this share of itself: no log holds the speeds of joints, and a finger bounces. Of how far a finger slid in
 /// the physics of the blind test, without noise and against where it touched first, its best formula left 0.31 to 0.47 (three
-/// servos, 20 to 80 ms).
-const DRAG_SHARE: f64 = 0.47;
+/// servos, 20 to 80 ms); with a servo's friction up to 0.56. Stick-slip that was taken for a drag left 0.75 and more.
+const DRAG_SHARE: f64 = 0.6;
+/// What a load does is right to this share of itself: nobody weighed the links, and a torque is that of the description's masses.
+const LOAD_SHARE: f64 = 1.5 * MASS_SD;
 /// A log that is early is right to this share of itself: joints slow down on their way. Of such logs that physics left 0.04 to
 /// 0.18.
 const EARLY_SHARE: f64 = 0.2;
@@ -103,6 +106,7 @@ impl Evidence<'_> {
             let share = |&block: &usize| match self.look.blocks[block].kind {
                 Some(Kind::TouchDrag) => DRAG_SHARE,
                 Some(Kind::EarlyLog) => EARLY_SHARE,
+                Some(kind) if kind.is_of_load() => LOAD_SHARE,
                 _ => 0.0,
             };
             let values = self.values(&set);
@@ -134,10 +138,11 @@ impl Evidence<'_> {
         of_library.is_some_and(both) && !both(model)
     }
 
-    /// What a rival in the set does to the rows, in floors; zero without one.
+    /// What a rival in the set does to the rows that nothing of the library beside it can, in floors; zero without one.
     fn rival_does(&self, model: &Model) -> f64 {
         let Some(place) = model.set.iter().position(|&block| block >= self.look.effects) else { return 0.0 };
-        self.values(&model.set).get(place).map_or(0.0, |(own, _)| self.look.does(model.set[place], own))
+        let (rival, others) = (model.set[place], self.of_library(model));
+        self.values(&model.set).get(place).map_or(0.0, |(own, _)| self.look.does_beyond(rival, own, &others))
     }
 
     /// Whether a set with a rival closes enough of the gap that the library's best set leaves open: both against what

@@ -48,15 +48,23 @@ const FURTHEST: f64 = 0.3;
 /// fast, though hardly surely: in development cases of the blind test no other one did by more than 1.6 that moved the tip by
 /// as much as below, but servos of one robot are not all alike …
 const STANDS_OUT: f64 = 1.8;
+/// One that gives way more than others beyond so many standard deviations is soft, and friction stops it farther from its goal
+/// for that: of 17 joints of development cases of the blind test that lagged so and gave way so, all were soft.
+const SURE_BESIDE_LAG: f64 = 5.0;
 /// … surely, and where nothing tells how fast each is, by this many …
 const STANDS_OUT_OF_ANY: f64 = 2.5;
-/// … and what it does beyond that is no less than this (units of the rows' noise).
+/// … and what it does beyond that is no less than this (units of the rows' noise), or this where it surely stands out.
 const SMALLEST_OF_FRICTION: f64 = 0.8;
+const SMALLEST_WHERE_SURE: f64 = 0.6;
 /// From one side and with one weight a servo lags by so many times what others do, always by nearly as much; by this many
 /// where it is sure that the lag grows with the load …
 const MORE_FROM_ONE_SIDE: f64 = 3.0;
 const MORE_WHERE_IT_GROWS: f64 = 2.0;
 const LEFT_OVER: f64 = 0.5;
+/// Where others bear enough that they would lag so many times what is usual, were they as soft, and lag by less than this share
+/// of that, they hold.
+const WOULD_SHOW: f64 = 3.0;
+const HOLDS: f64 = 0.4;
 /// What lags so many times as far need not be seen to grow.
 const FAR_MORE: f64 = 4.5;
 /// … and more with a larger load, by so many standard deviations. It is surely the load where what the lag
@@ -105,7 +113,9 @@ pub(crate) fn servos(
     let known = |kind: Kind| measurements.present.iter().any(|present| present.effect.kind == kind);
     let (mut found, words) = if known(Kind::ServoDroop) { (vec![], None) } else { servos.droops() };
     if !known(Kind::Stiction) {
-        found.extend(servos.sticking());
+        let soft = found.clone();
+        let is_told = |one: &NamedEffect| soft.iter().any(|other| other.site == one.site);
+        found.extend(servos.sticking(!known(Kind::ServoDroop)).into_iter().filter(|one| !is_told(one)));
     }
     found.extend(servos.other_masses());
     found.sort_by(|a, b| b.size_m.total_cmp(&a.size_m));
@@ -205,6 +215,13 @@ impl<'a> Servos<'a> {
         usual.is_some_and(|usual| slope.value > MORE * usual)
     }
 
+    /// By how much a servo gives way where that is more than the others do, though perhaps too little by itself for a name.
+    fn is_soft(&self, joint: &Joint) -> Option<Slope> {
+        let (slope, alone) = joint.gives.zip(joint.lag.gives)?;
+        let is_sure = alone.value > SURE_BESIDE_LAG * alone.sd && slope.value <= FURTHEST;
+        (is_sure && self.has_own_fault(joint, slope)).then_some(slope)
+    }
+
     /// From one side and with one weight: a servo that lags more than the others, and the more the larger its
     /// load. Where the load hardly varies, friction that stops it short looks the same.
     fn seen_from_one_side(&self, joint: &Joint) -> Option<NamedEffect> {
@@ -212,8 +229,10 @@ impl<'a> Servos<'a> {
         let usual = median(others.map(|other| other.lag.rms_rad))?;
         let (lag, grows) = (&joint.lag, joint.lag.gives?);
         let more = if lag.surely_grows() { MORE_WHERE_IT_GROWS } else { MORE_FROM_ONE_SIDE };
-        let stands_out = lag.rms_rad > more * usual && lag.sd_rad < LEFT_OVER * lag.rms_rad;
         let slope = lag.of_load_slope();
+        // Friction toward the load hides what a servo gives way by; that the others hold tells it all the same.
+        let alone = lag.surely_grows() && self.others_hold(joint, slope, usual);
+        let stands_out = alone || lag.rms_rad > more * usual && lag.sd_rad < LEFT_OVER * lag.rms_rad;
         // What lags far more than the others need not be seen to grow, only not to fall.
         let far = lag.rms_rad > FAR_MORE * usual;
         let grows = if far { grows.value > -HARDLY * grows.sd } else { grows.value > HARDLY * grows.sd };
@@ -230,15 +249,23 @@ impl<'a> Servos<'a> {
             return None;
         }
         let found = named(self.arm, Kind::ServoDroop, joint.j, slope, &size)?;
-        if lag.is_of_load() { Some(found) } else { or_friction(self.arm, joint.j, found) }
+        if alone || lag.is_of_load() { Some(found) } else { or_friction(self.arm, joint.j, found) }
+    }
+
+    /// Whether others bear enough to show it, were they as soft as this one, and do not.
+    fn others_hold(&self, joint: &Joint, slope: Slope, usual_rad: f64) -> bool {
+        let others = self.joints.iter().filter(|other| other.j != joint.j);
+        let lags = others.map(|other| (slope.value * other.torque_nm, other.lag.rms_rad));
+        holds(lags, usual_rad)
     }
 
     fn others_in_proportion(&self, joint: &Joint) -> impl Iterator<Item = Slope> {
         self.joints.iter().filter(move |other| other.j != joint.j).map(|other| other.lag.in_proportion)
     }
 
-    /// Servos that stay behind, from both sides, by more than others that are as fast.
-    fn sticking(&self) -> Vec<NamedEffect> {
+    /// Servos that stay behind, from both sides, by more than others that are as fast: they stick, or (where that may be told)
+    /// are soft.
+    fn sticking(&self, tells_soft: bool) -> Vec<NamedEffect> {
         let known = rates(self.arm, &self.levers.rows);
         let more = if known.is_some() { STANDS_OUT } else { STANDS_OUT_OF_ANY };
         let rate = |j: usize| known.as_ref().map_or(1.0, |rates| rates[j]);
@@ -255,9 +282,15 @@ impl<'a> Servos<'a> {
                 -0.5 * own.value * row.direction.get(joint.j).copied().unwrap_or_default()
             };
             let size = self.size(joint.j, back);
-            let found = named(self.arm, Kind::Stiction, joint.j, own, &size)
-                .filter(|_| size.sigmas > SMALLEST_OF_FRICTION)?;
-            let found = if slope.value < STANDS_OUT_OF_ANY * lags { hardly(found) } else { found };
+            if let Some(gives) = self.is_soft(joint).filter(|_| tells_soft) {
+                return named(self.arm, Kind::ServoDroop, joint.j, gives, &size)
+                    .filter(|_| size.sigmas > SMALLEST_WHERE_SURE);
+            }
+            let surely = slope.value >= STANDS_OUT_OF_ANY * lags;
+            let least = if surely { SMALLEST_WHERE_SURE } else { SMALLEST_OF_FRICTION };
+            let found =
+                named(self.arm, Kind::Stiction, joint.j, own, &size).filter(|_| size.sigmas > least)?;
+            let found = if surely { found } else { hardly(found) };
             if self.behind_gear { or_play(self.arm, joint.j, found) } else { Some(found) }
         });
         found.collect()
@@ -330,6 +363,12 @@ fn all_give(slope: Slope, others: impl Iterator<Item = Slope>) -> bool {
     usual.is_some_and(|usual| slope.value < MORE * usual)
 }
 
+/// Of others by what each would lag by, were it as soft, and by what it does (rad): whether some would show it, and none does.
+fn holds(lags: impl Iterator<Item = (f64, f64)>, usual_rad: f64) -> bool {
+    let telling: Vec<(f64, f64)> = lags.filter(|(would, _)| *would > WOULD_SHOW * usual_rad).collect();
+    !telling.is_empty() && telling.iter().all(|(would, does)| *does < HOLDS * would)
+}
+
 /// What servos do all alike, in words: how far each gives way (rad/N m) and moves the tip by it (m).
 fn give_way(alike: &[(f64, f64)]) -> Option<String> {
     median(alike.iter().map(|(value, _)| *value)).map(|usual| {
@@ -388,6 +427,14 @@ mod tests {
         // What hardly bears anything, or lags to the other side, says nothing of how soft servos are.
         let untold = [Slope { value: 0.4, sd: 0.2 }, slope(-0.05), slope(0.03)];
         assert!(!all_give(slope(0.035), untold.into_iter()));
+    }
+
+    #[test]
+    fn servos_that_bear_as_much_and_do_not_lag_tell_the_soft_one() {
+        // What each would lag by, were it as soft, and what it does, in mrad, where 1.8 are usual.
+        assert!(holds([(7.2, 1.6), (2.6, 4.5), (0.0, 3.0)].into_iter(), 1.8));
+        assert!(!holds([(7.2, 1.6), (6.0, 5.0)].into_iter(), 1.8), "another one gives way as well");
+        assert!(!holds([(2.6, 0.5), (0.0, 3.0)].into_iter(), 1.8), "nobody bears enough to tell");
     }
 
     #[test]
