@@ -227,35 +227,39 @@ impl Eyes {
     /// on its sensor of that, so a pixel is nearly the same step in each of the three wherever one looks. A tangent grows
     /// by five times as much at 65° off the axis as in the middle.
     pub fn natural(&self, in_left: &Point3<f64>) -> [f64; 3] {
-        let ray = &in_left.coords;
-        let across = ray.xy().norm();
-        let per_length =
-            if across > NEAR_AXIS * ray.norm() { across.atan2(ray.z) / across } else { 1.0 / ray.z };
-        let to_right = self.right_in_left_m();
-        // Of the triangle of both eyes and the point: the cross product is the same with either ray.
-        let between = ray.cross(&to_right).norm().atan2(ray.dot(&(ray - to_right)));
-        [per_length * ray.x, per_length * ray.y, between]
+        natural(&in_left.coords, &right_in_left_m(&self.cameras))
     }
 
     /// The other way: the point in the left camera, m. `None` where the rays do not meet.
     pub fn place(&self, natural: &[f64]) -> Option<Point3<f64>> {
-        let [right, down, between] = *natural.first_chunk::<3>()?;
-        let off_axis = right.hypot(down);
-        let across = if off_axis > NEAR_AXIS { off_axis.sin() / off_axis } else { 1.0 };
-        let ray = Vector3::new(across * right, across * down, off_axis.cos());
-        let to_right = self.right_in_left_m();
-        let at_left = ray.cross(&to_right).norm().atan2(ray.dot(&to_right));
-        // Law of sines.
-        let range_m = to_right.norm() * (at_left + between).sin() / between.sin();
-        let meet =
-            between > 0.0 && at_left + between < std::f64::consts::PI && off_axis < std::f64::consts::PI;
-        (meet && range_m.is_finite()).then(|| Point3::from(ray * range_m))
+        place(*natural.first_chunk::<3>()?, &right_in_left_m(&self.cameras)).map(Point3::from)
     }
+}
 
-    /// The right eye as the left one has it, m.
-    fn right_in_left_m(&self) -> Vector3<f64> {
-        self.cameras.right_from_left.isometry.inverse().translation.vector
-    }
+/// The right eye as the left one has it, m.
+pub(crate) fn right_in_left_m(cameras: &StereoCameras) -> Vector3<f64> {
+    cameras.right_from_left.isometry.inverse().translation.vector
+}
+
+/// See [`Eyes::natural`]: of a ray in the left camera and the right eye there, m.
+pub(crate) fn natural(ray: &Vector3<f64>, to_right: &Vector3<f64>) -> [f64; 3] {
+    let across = ray.xy().norm();
+    let per_length = if across > NEAR_AXIS * ray.norm() { across.atan2(ray.z) / across } else { 1.0 / ray.z };
+    // Of the triangle of both eyes and the point: the cross product is the same with either ray.
+    let between = ray.cross(to_right).norm().atan2(ray.dot(&(ray - to_right)));
+    [per_length * ray.x, per_length * ray.y, between]
+}
+
+/// The other way, m. `None` where the rays do not meet.
+pub(crate) fn place([right, down, between]: [f64; 3], to_right: &Vector3<f64>) -> Option<Vector3<f64>> {
+    let off_axis = right.hypot(down);
+    let across = if off_axis > NEAR_AXIS { off_axis.sin() / off_axis } else { 1.0 };
+    let ray = Vector3::new(across * right, across * down, off_axis.cos());
+    let at_left = ray.cross(to_right).norm().atan2(ray.dot(to_right));
+    // Law of sines.
+    let range_m = to_right.norm() * (at_left + between).sin() / between.sin();
+    let meet = between > 0.0 && at_left + between < std::f64::consts::PI && off_axis < std::f64::consts::PI;
+    (meet && range_m.is_finite()).then(|| ray * range_m)
 }
 
 /// How far off the axis a ray is, as the lens bends it (angle of a fisheye, tangent of a pinhole), as a share of what it

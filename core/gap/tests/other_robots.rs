@@ -2,6 +2,7 @@
 //! to hold on the other.
 #![allow(clippy::print_stdout, reason = "figures are read from the test's output")]
 
+use std::f64::consts::TAU;
 use std::time::Instant;
 
 use nalgebra::{Cholesky, DMatrix, DVector};
@@ -192,6 +193,33 @@ fn random_poses_without_repeats_are_never_declared_free_of_a_gap() {
         println!("{:?}: {}", finding.verdict, finding.sentence);
         assert_eq!(finding.comparison.floor_source, FloorSource::Fitted);
         assert_ne!(finding.verdict, Verdict::NoGap, "{}", finding.sentence);
+    }
+}
+
+/// The same from a tracker that sways on its tripod, two turns and a half while the poses come, so far (m) to either side.
+fn swaying(by_m: f64, seed: u64) -> Measurements {
+    let mut made = seven_joints(100, seed);
+    let count = made.rows.len() as f64;
+    for (i, row) in made.rows.iter_mut().enumerate() {
+        row.t_secs = Some(20.0 * i as f64);
+        row.measured[1] += by_m * (2.5 * TAU * i as f64 / count).sin();
+    }
+    made
+}
+
+#[test]
+fn a_tracker_that_sways_is_no_noise_though_no_pose_is_repeated() {
+    let options = Options { show: false, advise: false, ..Options::default() };
+    for seed in 1..4 {
+        let [stands, sways] = [0.0, 3e-3].map(|by_m| {
+            let finding = find(&swaying(by_m, seed), &options, &Unattended).expect("can be looked at");
+            println!("{:?}: {}", finding.verdict, finding.sentence);
+            finding
+        });
+        assert_eq!(stands.comparison.floor_source, FloorSource::Fitted);
+        assert_ne!(stands.verdict, Verdict::NotInLibrary, "{}", stands.sentence);
+        assert_eq!(sways.verdict, Verdict::NotInLibrary, "{}", sways.sentence);
+        assert!(sways.sentence.contains("time"), "{}", sways.sentence);
     }
 }
 

@@ -103,11 +103,23 @@ fn lowers(made: &Measurements, row: &Observation) -> Vec<f64> {
     (0..row.direction.len()).map(slope).collect()
 }
 
-/// Touches from both sides, with a weight and without. Every joint turns one way until the finger meets the glass; where those that lift it would win,
-/// those that lower it are all faster by the same factor. Servos stay behind by a little and by their speed, one of them by
+/// Where touches come from.
+#[derive(Clone, Copy, PartialEq)]
+enum From {
+    /// With a weight and without.
+    BothSides,
+    /// Servos that rub by a fifth of that.
+    OneSide,
+}
+
+/// Touches. Every joint turns one way until the finger meets the glass; where those that lift it would win,
+/// those that lower it are all faster by the same factor. Servos stay behind by a little and by their speed, some of them by
 /// `more` than that.
-fn moved(more: More, seed: u64) -> Measurements {
-    let (sides, payloads) = (vec!["plus", "minus"], vec![0.0, 0.4]);
+fn moved(from: From, more: &[More], seed: u64) -> Measurements {
+    let (sides, payloads, rubs) = match from {
+        From::BothSides => (vec!["plus", "minus"], vec![0.0, 0.4], 1.0),
+        From::OneSide => (vec!["plus"], vec![0.0], 0.2),
+    };
     let plan = Plan { places: 80, sides, payloads, noise_m: 0.7e-3, ..Plan::default() };
     let mut made = touches(&plan, &[], seed);
     let mut random = StdRng::seed_from_u64(seed + 2000);
@@ -127,9 +139,9 @@ fn moved(more: More, seed: u64) -> Measurements {
             Situation::new(arm, &there, &row.direction, row.payload_kg, &up).torques_nm().to_vec();
         let lag = |j: usize| {
             let rate = if sinks[j] > 0.0 { faster } else { 1.0 };
-            let (stops_rad, gives) = if j == more.joint { (more.stops_rad, more.gives) } else { (0.0, 0.0) };
-            let behind_rad = (1e-3 + 4e-3 * rate + stops_rad) * row.direction[j];
-            behind_rad - gives * torques_nm[j] + 1e-4 * normal(&mut random)
+            let own = more.iter().find(|one| one.joint == j).copied().unwrap_or_default();
+            let behind_rad = (rubs * (1e-3 + 4e-3 * rate) + own.stops_rad) * row.direction[j];
+            behind_rad - own.gives * torques_nm[j] + 1e-4 * normal(&mut random)
         };
         let lags: Vec<f64> = (0..there.len()).map(lag).collect();
         row.commanded_rad = Some(there.iter().zip(&lags).map(|(at, lag)| at + lag).collect());
@@ -152,8 +164,8 @@ fn sites(made: &Measurements, id: &str) -> Vec<String> {
 fn servos_that_lag_by_their_speed_do_not_stick_and_one_that_stays_behind_by_more_does() {
     for seed in 0..3 {
         let none: Vec<String> = vec![];
-        assert_eq!(sites(&moved(More::default(), seed), "stiction"), none, "all are as they should be");
-        let sticks = moved(More { joint: SHOULDER, stops_rad: 15e-3, gives: 0.0 }, seed);
+        assert_eq!(sites(&moved(From::BothSides, &[], seed), "stiction"), none, "all are as they should be");
+        let sticks = moved(From::BothSides, &[More { joint: SHOULDER, stops_rad: 15e-3, gives: 0.0 }], seed);
         assert_eq!(sites(&sticks, "stiction"), [JOINTS[SHOULDER]]);
         assert_eq!(sites(&sticks, "servo-droop"), none);
     }
@@ -161,11 +173,31 @@ fn servos_that_lag_by_their_speed_do_not_stick_and_one_that_stays_behind_by_more
 
 #[test]
 fn friction_stops_a_soft_servo_farther_from_its_goal_and_it_does_not_stick_for_that() {
+    let wrist = |stops_rad: f64, gives: f64| More { joint: WRIST, stops_rad, gives };
     for seed in 0..3 {
         let none: Vec<String> = vec![];
-        // Hardly loaded: what it gives way by alone would be too little for a name.
-        let soft = moved(More { joint: WRIST, stops_rad: 30e-3, gives: 0.03 }, seed);
+        // What it gives way by alone is too little for a name, for it bears little.
+        let by_load = moved(From::BothSides, &[wrist(0.0, 0.03)], seed);
+        assert_eq!(sites(&by_load, "servo-droop"), none);
+        let soft = moved(From::BothSides, &[wrist(15e-3, 0.03)], seed);
         assert_eq!(sites(&soft, "servo-droop"), [JOINTS[WRIST]]);
         assert_eq!(sites(&soft, "stiction"), none);
+        // One that gives way by so much less would need more friction than gravity asks of any joint.
+        let sticks = moved(From::BothSides, &[wrist(15e-3, 0.003)], seed);
+        assert_eq!(sites(&sticks, "stiction"), [JOINTS[WRIST]]);
+        assert_eq!(sites(&sticks, "servo-droop"), none);
+    }
+}
+
+#[test]
+fn from_one_side_the_soft_servo_is_told_by_those_that_hold() {
+    // Friction toward the load hides what the shoulder gives way by, so that it lags no more than others do.
+    let soft = |joint: usize| More { joint, stops_rad: 0.0, gives: 0.05 };
+    for seed in 0..3 {
+        let none: Vec<String> = vec![];
+        assert_eq!(sites(&moved(From::OneSide, &[], seed), "servo-droop"), none);
+        assert_eq!(sites(&moved(From::OneSide, &[soft(SHOULDER)], seed), "servo-droop"), [JOINTS[SHOULDER]]);
+        let all: Vec<More> = (0..JOINTS.len()).map(soft).collect();
+        assert_eq!(sites(&moved(From::OneSide, &all, seed), "servo-droop"), none, "that is their way");
     }
 }

@@ -31,7 +31,6 @@ pub use error::RigModelError;
 pub use export::{CAMERA_LINKS, ExportError, Exported};
 pub use eyes::numbers_of_eyes;
 pub use eyes_left::EyesLeft;
-pub(crate) use eyes_left::tangents_per_angle;
 pub use file::{FORMAT, is_rig_model};
 pub use left_out::LeftOut;
 pub(crate) use predict::Measured;

@@ -116,7 +116,7 @@ mod tests {
         let left = model.left_of(&watched(&rig, 0.004, 12)).expect("watched");
         let robot_from_left = rig.robot_from_left(&rig.home());
         let at = robot_from_left.inverse() * Point::<Robot>::new(0.4, 0.0, rig.table.height_m);
-        let covariance = left.covariance_m2(&at.coords.coords, rig.eyes.cameras.baseline_m());
+        let covariance = left.covariance_m2(&at.coords.coords, &rig.eyes.cameras);
         let turn = robot_from_left.rotation();
         let in_robot = turn * covariance * turn.transpose();
         // How bearing and disparity go together is not kept: the way off lies inside the 95 %, whichever way it is.

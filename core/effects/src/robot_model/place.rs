@@ -136,10 +136,11 @@ impl RobotModel {
             slopes.set_column(k, &slope(&mut at, &here, STEP_M)?);
         }
         // What the effects leave is not known of what is seen.
-        let left_m2 =
-            self.added.contents.eyes_left.map_or_else(Matrix3::zeros, |left| {
-                left.covariance_m2(&seen_at, self.eyes.cameras.baseline_m())
-            });
+        let left_m2 = self
+            .added
+            .contents
+            .eyes_left
+            .map_or_else(Matrix3::zeros, |left| left.covariance_m2(&seen_at, &self.eyes.cameras));
         let by_sight = slopes * (covariance_m2 + by_lenses_m2 + left_m2) * slopes.transpose();
         let by_values = of_values(&self.of_eyes, |effects| undone(&seen_at, effects))?;
         let covariance_m2 = by_sight + by_values + by_mount_m2;

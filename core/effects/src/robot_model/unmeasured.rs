@@ -15,7 +15,7 @@ use plumbline_model::robot::Rig;
 
 use super::mounted::Mounted;
 use crate::library::{Kind, Present};
-use crate::rig_model::{Measured, tangents_per_angle};
+use crate::rig_model::Measured;
 
 /// What of the eyes is taken as described because nobody measured it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -137,8 +137,9 @@ pub(super) fn turned_sideways(
     in_left_m: &Vector3<f64>,
 ) -> Vector3<f64> {
     let depth_m = in_left_m.z;
-    let disparity_rad = yaw_rad * tangents_per_angle(in_left_m.x / depth_m, in_left_m.y / depth_m);
-    in_left_m * (disparity_rad * depth_m / cameras.baseline_m())
+    // A ray's tangent to the side grows faster than its angle, the farther off it is to that side.
+    let by_tangent = yaw_rad * (1.0 + (in_left_m.x / depth_m).powi(2));
+    in_left_m * (by_tangent * depth_m / cameras.baseline_m())
 }
 
 /// Usual size of a parameter.

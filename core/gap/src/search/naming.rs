@@ -62,10 +62,10 @@ const PLAY_OR_DRAG: f64 = 0.12;
 /// development cases of the blind test, in twelve it was one of them, now the larger, now the smaller (Laplace: 8 of 15).
 const DRAG_OR_EARLY: f64 = 0.53;
 
-/// A drag whose squares (of floors) are less than those of angles that were read early by no more than this for each floor that
-/// it does may be those: nothing logs how much of a lag is friction. Of eight such names in development cases of the blind test
-/// three were drags (Laplace).
-const EARLY_WITHIN: f64 = 45.0;
+/// A drag may be angles that were read early where those leave open no more than this of what it explains (squares): nothing
+/// logs how much of a lag is friction. Of five such names of single effects in development cases of the blind test two
+/// were drags (Laplace).
+const EARLY_WITHIN: f64 = 0.1;
 const DRAG_FOR_EARLY: f64 = 0.4;
 
 /// What the sets say together.
@@ -90,6 +90,8 @@ struct Candidate {
     effect: NamedEffect,
     /// How probable it is that it is there itself, where it is, and is not left of another one.
     share: f64,
+    /// How many things it counts as: one, though it may be another than its name, or its share where that other one has a name too.
+    counts: f64,
 }
 
 /// What the search has, for naming.
@@ -139,7 +141,7 @@ impl Evidence<'_> {
         let unknown = unknown.max(if is_other { 0.95 } else { 0.0 });
         // One of every joint is more than one thing, and of what is left of each other no more than one is there.
         let families = found.iter().filter(|one| self.look.blocks[one.block].is_family).count();
-        let there: f64 = found.iter().map(|one| one.share).sum();
+        let there: f64 = found.iter().map(|one| one.counts).sum();
         let by_names = Many::probability_by_names(there.round() as usize + families);
         let many = self.many.map(|(many, by_evidence)| (many, by_evidence.max(by_names)));
         let is_many = |(_, probability): &(&Many, f64)| *probability > 0.5 && unknown <= 0.5;
@@ -153,7 +155,7 @@ impl Evidence<'_> {
         } else {
             Verdict::Class
         };
-        for Candidate { block, effect, share } in &mut found {
+        for Candidate { block, effect, share, .. } in &mut found {
             if let Some((many, probability)) = many {
                 let stands_out = probability * self.stands_out_of(many, *block);
                 let beside = |few: f64| (1.0 - probability) * few + stands_out;
@@ -202,13 +204,18 @@ impl Evidence<'_> {
                 if effect.id == Kind::EarlyLog.id() && set.iter().any(beside_all) {
                     effect.title.push_str(OTHERWISE_THAN_ALL);
                 }
-                let left_of = self
-                    .may_be_left_of(set, &sizes, place)
-                    .or_else(|| Some((self.early_instead(set, place, size)?, DRAG_FOR_EARLY)));
+                let left_of = self.may_be_left_of(set, &sizes, place);
+                let counts = left_of.map_or(1.0, |(_, share)| share);
+                let left_of = left_of.or_else(|| Some((self.early_instead(set, place)?, DRAG_FOR_EARLY)));
                 if let Some((whole, share)) = left_of {
                     effect.class = with_whole(effect.class, &self.library.effects[whole], share);
                 }
-                found.push(Candidate { block, effect, share: left_of.map_or(1.0, |(_, share)| share) });
+                found.push(Candidate {
+                    block,
+                    effect,
+                    share: left_of.map_or(1.0, |(_, share)| share),
+                    counts,
+                });
             } else {
                 rest += 1;
             }
@@ -285,24 +292,30 @@ impl Evidence<'_> {
     }
 
     /// Angles that all were read early, where they explain what a drag of the set does nearly as well.
-    fn early_instead(&self, set: &[usize], place: usize, size: f64) -> Option<usize> {
+    fn early_instead(&self, set: &[usize], place: usize) -> Option<usize> {
         let is_early = |block: usize| self.look.blocks[block].is_of_all;
-        if self.look.blocks[set[place]].kind != Some(Kind::TouchDrag)
-            || set.iter().any(|&block| is_early(block))
-        {
+        let is_drag = self.look.blocks[set[place]].kind == Some(Kind::TouchDrag);
+        if !is_drag || set.iter().any(|&block| is_early(block)) {
             return None;
         }
         let field = self.look.fields.get(self.look.likely(self.explored))?;
         let square = |set: &[usize]| field.given(set, &self.look.packed).square_left();
-        let instead = |early: usize| {
+        let with = |early: usize| {
             let mut with = set.to_vec();
             with[place] = early;
-            (square(&with), early)
+            with
+        };
+        let was_early = |early: &usize| {
+            let values = self.values(&with(*early));
+            values.get(place).is_some_and(|(own, _)| own.iter().all(|value| *value > 0.0))
         };
         let known = self.look.allowed.iter().copied().filter(|&block| block < self.look.effects);
+        let early = known.filter(|&block| is_early(block)).filter(was_early);
         let (left, early) =
-            known.filter(|&block| is_early(block)).map(instead).min_by(|a, b| a.0.total_cmp(&b.0))?;
-        (left - square(set) < EARLY_WITHIN * size).then_some(early)
+            early.map(|early| (square(&with(early)), early)).min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let base: Vec<usize> = set.iter().copied().filter(|&other| other != set[place]).collect();
+        let of_drag = square(set);
+        (left - of_drag < EARLY_WITHIN * (square(&base) - of_drag)).then_some(early)
     }
 
     fn goes_with_speed(&self, block: usize) -> bool {

@@ -110,9 +110,12 @@ impl Evidence<'_> {
                 _ => 0.0,
             };
             let values = self.values(&set);
-            let left = set.iter().zip(&values).map(|(block, (own, _))| (share(block), block, own));
+            let left = set.iter().zip(&values).map(|(block, (own, _))| (share(block), *block, own));
+            // Of two that make up for each other only what is left of both goes by their formulas.
+            let beside =
+                |block: usize| set.iter().copied().filter(|&other| other != block).collect::<Vec<_>>();
             left.filter(|(share, ..)| *share > 0.0)
-                .map(|(share, block, own)| share * self.look.does(*block, own))
+                .map(|(share, block, own)| share * self.look.does_beyond(block, own, &beside(block)))
                 .fold(0.0, f64::max)
         };
         let by_eyes = self.floor.kinds.iter().all(|kind| !kind.what.is_placed());

@@ -65,6 +65,8 @@ const LEFT_OVER: f64 = 0.5;
 /// of that, they hold.
 const WOULD_SHOW: f64 = 3.0;
 const HOLDS: f64 = 0.4;
+/// They tell of one that bears no less than they do by this factor.
+const ABOUT_AS_MUCH: f64 = 3.0;
 /// What lags so many times as far need not be seen to grow.
 const FAR_MORE: f64 = 4.5;
 /// … and more with a larger load, by so many standard deviations. It is surely the load where what the lag
@@ -113,9 +115,10 @@ pub(crate) fn servos(
     let known = |kind: Kind| measurements.present.iter().any(|present| present.effect.kind == kind);
     let (mut found, words) = if known(Kind::ServoDroop) { (vec![], None) } else { servos.droops() };
     if !known(Kind::Stiction) {
-        let soft = found.clone();
-        let is_told = |one: &NamedEffect| soft.iter().any(|other| other.site == one.site);
-        found.extend(servos.sticking(!known(Kind::ServoDroop)).into_iter().filter(|one| !is_told(one)));
+        let present = measurements.present.iter().map(|present| &present.effect);
+        let soft = present.filter(|effect| effect.kind == Kind::ServoDroop).map(|effect| effect.site.clone());
+        let soft: Vec<String> = soft.chain(found.iter().map(|effect| effect.site.clone())).collect();
+        found.extend(servos.sticking(&soft));
     }
     found.extend(servos.other_masses());
     found.sort_by(|a, b| b.size_m.total_cmp(&a.size_m));
@@ -215,11 +218,20 @@ impl<'a> Servos<'a> {
         usual.is_some_and(|usual| slope.value > MORE * usual)
     }
 
-    /// By how much a servo gives way where that is more than the others do, though perhaps too little by itself for a name.
-    fn is_soft(&self, joint: &Joint) -> Option<Slope> {
+    /// By how much a servo gives way where that is more than the others do, though perhaps too little by itself for a name, and
+    /// where it explains how far friction stops it (from side to side, rad): with a friction that is less than the most that
+    /// gravity asks of any joint.
+    fn softness(&self, joint: &Joint, stops_rad: f64) -> Option<Slope> {
         let (slope, alone) = joint.gives.zip(joint.lag.gives)?;
         let is_sure = alone.value > SURE_BESIDE_LAG * alone.sd && slope.value <= FURTHEST;
-        (is_sure && self.has_own_fault(joint, slope)).then_some(slope)
+        let most_nm =
+            self.joints.iter().filter(|one| self.turns(one)).map(|one| one.torque_nm).fold(0.0, f64::max);
+        let explains = 0.5 * stops_rad < slope.value * most_nm;
+        (is_sure && explains && self.turns(joint) && self.has_own_fault(joint, slope)).then_some(slope)
+    }
+
+    fn turns(&self, joint: &Joint) -> bool {
+        !self.arm.parts[joint.j].slides
     }
 
     /// From one side and with one weight: a servo that lags more than the others, and the more the larger its
@@ -252,20 +264,25 @@ impl<'a> Servos<'a> {
         if alone || lag.is_of_load() { Some(found) } else { or_friction(self.arm, joint.j, found) }
     }
 
-    /// Whether others bear enough to show it, were they as soft as this one, and do not.
+    /// Whether others that bear about as much would show it, were they as soft as this one, and do not.
     fn others_hold(&self, joint: &Joint, slope: Slope, usual_rad: f64) -> bool {
-        let others = self.joints.iter().filter(|other| other.j != joint.j);
-        let lags = others.map(|other| (slope.value * other.torque_nm, other.lag.rms_rad));
-        holds(lags, usual_rad)
+        let others = self.joints.iter().filter(|other| other.j != joint.j && self.turns(other));
+        let others =
+            others.filter(|other| other.torque_nm < ABOUT_AS_MUCH * joint.torque_nm).map(|other| Other {
+                would_rad: slope.value * other.torque_nm,
+                does_rad: other.lag.rms_rad,
+                grows: other.lag.gives.map_or(0.0, |grows| grows.value / slope.value),
+            });
+        self.turns(joint) && holds(others, usual_rad)
     }
 
     fn others_in_proportion(&self, joint: &Joint) -> impl Iterator<Item = Slope> {
         self.joints.iter().filter(move |other| other.j != joint.j).map(|other| other.lag.in_proportion)
     }
 
-    /// Servos that stay behind, from both sides, by more than others that are as fast: they stick, or (where that may be told)
-    /// are soft.
-    fn sticking(&self, tells_soft: bool) -> Vec<NamedEffect> {
+    /// Servos that stay behind, from both sides, by more than others that are as fast: they stick, or are soft, unless it is
+    /// `told` of that joint that it is.
+    fn sticking(&self, told: &[String]) -> Vec<NamedEffect> {
         let known = rates(self.arm, &self.levers.rows);
         let more = if known.is_some() { STANDS_OUT } else { STANDS_OUT_OF_ANY };
         let rate = |j: usize| known.as_ref().map_or(1.0, |rates| rates[j]);
@@ -282,14 +299,18 @@ impl<'a> Servos<'a> {
                 -0.5 * own.value * row.direction.get(joint.j).copied().unwrap_or_default()
             };
             let size = self.size(joint.j, back);
-            if let Some(gives) = self.is_soft(joint).filter(|_| tells_soft) {
-                return named(self.arm, Kind::ServoDroop, joint.j, gives, &size)
-                    .filter(|_| size.sigmas > SMALLEST_WHERE_SURE);
-            }
             let surely = slope.value >= STANDS_OUT_OF_ANY * lags;
-            let least = if surely { SMALLEST_WHERE_SURE } else { SMALLEST_OF_FRICTION };
-            let found =
-                named(self.arm, Kind::Stiction, joint.j, own, &size).filter(|_| size.sigmas > least)?;
+            if size.sigmas < if surely { SMALLEST_WHERE_SURE } else { SMALLEST_OF_FRICTION } {
+                return None;
+            }
+            let found = match self.softness(joint, slope.value / rate(joint.j)) {
+                Some(_) if told.contains(&self.arm.parts[joint.j].joint) => None,
+                Some(gives) => {
+                    let size = self.size(joint.j, |row| gives.value * self.torque_nm(row, joint.j));
+                    named(self.arm, Kind::ServoDroop, joint.j, gives, &size)
+                }
+                None => named(self.arm, Kind::Stiction, joint.j, own, &size),
+            }?;
             let found = if surely { found } else { hardly(found) };
             if self.behind_gear { or_play(self.arm, joint.j, found) } else { Some(found) }
         });
@@ -363,10 +384,20 @@ fn all_give(slope: Slope, others: impl Iterator<Item = Slope>) -> bool {
     usual.is_some_and(|usual| slope.value < MORE * usual)
 }
 
-/// Of others by what each would lag by, were it as soft, and by what it does (rad): whether some would show it, and none does.
-fn holds(lags: impl Iterator<Item = (f64, f64)>, usual_rad: f64) -> bool {
-    let telling: Vec<(f64, f64)> = lags.filter(|(would, _)| *would > WOULD_SHOW * usual_rad).collect();
-    !telling.is_empty() && telling.iter().all(|(would, does)| *does < HOLDS * would)
+/// Another servo beside one that gives way.
+struct Other {
+    /// What it would lag by, were it as soft, and what it does.
+    would_rad: f64,
+    does_rad: f64,
+    /// What it lags more per torque, as a share of what the soft one does: friction may hide the whole, and not what it grows by.
+    grows: f64,
+}
+
+/// Whether some would show it, and none does.
+fn holds(others: impl Iterator<Item = Other>, usual_rad: f64) -> bool {
+    let telling: Vec<Other> = others.filter(|other| other.would_rad > WOULD_SHOW * usual_rad).collect();
+    let is_stiff = |other: &Other| other.does_rad < HOLDS * other.would_rad && other.grows < HOLDS;
+    !telling.is_empty() && telling.iter().all(is_stiff)
 }
 
 /// What servos do all alike, in words: how far each gives way (rad/N m) and moves the tip by it (m).
@@ -432,9 +463,15 @@ mod tests {
     #[test]
     fn servos_that_bear_as_much_and_do_not_lag_tell_the_soft_one() {
         // What each would lag by, were it as soft, and what it does, in mrad, where 1.8 are usual.
-        assert!(holds([(7.2, 1.6), (2.6, 4.5), (0.0, 3.0)].into_iter(), 1.8));
-        assert!(!holds([(7.2, 1.6), (6.0, 5.0)].into_iter(), 1.8), "another one gives way as well");
-        assert!(!holds([(2.6, 0.5), (0.0, 3.0)].into_iter(), 1.8), "nobody bears enough to tell");
+        let other = |would_rad: f64, does_rad: f64, grows: f64| Other { would_rad, does_rad, grows };
+        let stiff = || other(7.2, 1.6, 0.1);
+        assert!(holds([stiff(), other(2.6, 4.5, 0.0), other(0.0, 3.0, 0.0)].into_iter(), 1.8));
+        assert!(!holds([stiff(), other(6.0, 5.0, 0.1)].into_iter(), 1.8), "another one gives way as well");
+        assert!(
+            !holds([stiff(), other(6.0, 1.0, 0.9)].into_iter(), 1.8),
+            "so does one whose friction hides it"
+        );
+        assert!(!holds([other(2.6, 0.5, 0.0), other(0.0, 3.0, 0.0)].into_iter(), 1.8), "nobody bears enough");
     }
 
     #[test]
