@@ -134,7 +134,8 @@ fn with_servos(finding: &mut Finding, (servos, words): (Vec<NamedEffect>, Option
     // holds the joint back.
     let plays = |servo: &NamedEffect| {
         let same = |effect: &NamedEffect| effect.id == Kind::Backlash.id() && effect.site == servo.site;
-        servo.id == Kind::Stiction.id() && finding.effects.iter().any(same)
+        let may_play = servo.class.iter().any(|member| member.id == Kind::Backlash.id());
+        (servo.id == Kind::Stiction.id() || may_play) && finding.effects.iter().any(same)
     };
     let servos: Vec<NamedEffect> = servos.into_iter().filter(|servo| !plays(servo)).collect();
     if finding.verdict == Verdict::NoGap && !servos.is_empty() {
