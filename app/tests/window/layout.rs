@@ -115,6 +115,16 @@ fn faults_of(view: &View, screen: Screen, (size, zoom): ([f32; 2], f32), theme: 
 }
 
 #[test]
+fn a_shape_in_many_words_stands_on_lines_of_its_own() {
+    let mut finding = sample::class();
+    let which = finding.effects[0].parameters.first_mut().expect("a parameter");
+    which.name = "which".to_owned();
+    which.text = Some("way that the joints yield while the finger presses".to_owned());
+    let view = made_up_gap::with(made_up_gap::found(finding));
+    assert_eq!(cut_on_tab(&view, "Name and add", SIZES[0]), Vec::<String>::new());
+}
+
+#[test]
 fn numbers_of_the_board_stand_within_their_tile_and_a_long_sentence_on_two_lines() {
     let fake = Fake::over(made_up::everything());
     let settings =

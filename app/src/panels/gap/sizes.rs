@@ -62,18 +62,16 @@ pub fn sizes(ui: &mut Ui, effect: &NamedEffect, finding: &Finding) {
 
 /// Whether the columns of all rows stand beside each other in the room that is left.
 fn fits(ui: &Ui, rows: &[Row]) -> bool {
-    let width = |text: &RichText| {
-        let galley = egui::WidgetText::from(text.clone()).into_galley(
-            ui,
-            Some(egui::TextWrapMode::Extend),
-            f32::INFINITY,
-            TextStyle::Body,
-        );
-        galley.size().x
-    };
     let columns: f32 =
-        (0..3).map(|column| rows.iter().map(|row| width(&row[column])).fold(0.0, f32::max)).sum();
+        (0..3).map(|column| rows.iter().map(|row| width(ui, &row[column])).fold(0.0, f32::max)).sum();
     columns + 2.0 * space::M <= ui.available_width()
+}
+
+/// Of a text in one line.
+fn width(ui: &Ui, text: &RichText) -> f32 {
+    let mode = Some(egui::TextWrapMode::Extend);
+    let galley = egui::WidgetText::from(text.clone()).into_galley(ui, mode, f32::INFINITY, TextStyle::Body);
+    galley.size().x
 }
 
 fn beside(ui: &mut Ui, effect: &NamedEffect, rows: Vec<Row>) {
@@ -93,6 +91,7 @@ fn below(ui: &mut Ui, rows: Vec<Row>) {
         // Lines of text, and none as high as a button: what belongs together stands together.
         ui.spacing_mut().item_spacing.y = ROW_GAP;
         ui.spacing_mut().interact_size.y = 0.0;
+        let line = ui.available_width();
         for row in rows {
             ui.horizontal_wrapped(|ui| {
                 ui.spacing_mut().item_spacing = egui::vec2(space::S, 0.0);
@@ -100,8 +99,14 @@ fn below(ui: &mut Ui, rows: Vec<Row>) {
                 // Nothing stands before it, so it may be broken where it is long.
                 ui.add(Label::new(name).wrap());
                 for text in [value, known].into_iter().filter(|text| !text.text().is_empty()) {
-                    // As a whole: a text that is broken begins under what stands before it.
-                    ui.add(Label::new(text).extend());
+                    if width(ui, &text) > line {
+                        // Longer than a line: in lines of its own.
+                        ui.end_row();
+                        ui.add(Label::new(text).wrap());
+                    } else {
+                        // As a whole: a text that is broken begins under what stands before it.
+                        ui.add(Label::new(text).extend());
+                    }
                 }
             });
         }
