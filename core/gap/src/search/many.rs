@@ -152,8 +152,8 @@ impl Evidence<'_> {
         let ones = self.look.allowed.iter().filter(is_one);
         let columns: Vec<usize> = ones.flat_map(|&one| self.look.packed[one].columns()).collect();
         let (values, covariance) = many.values(&columns, own.wider());
-        let mut placed = self.floor.kinds.iter().filter(|kind| kind.what.is_placed()).peekable();
-        let touched = placed.peek().is_some() && placed.all(|kind| kind.what == What::Touch);
+        let has = |is: fn(What) -> bool| self.floor.kinds.iter().any(|kind| is(kind.what));
+        let touched = has(|what| what == What::Touch) && !has(What::is_pose);
         let most = if touched && own.kind.is_some_and(Kind::is_origin) { GEOMETRY_BY_TOUCHES } else { 1.0 };
         most * stands_out(&values, &covariance).unwrap_or(0.0)
     }
