@@ -4,7 +4,7 @@
 use plumbline_effects::{Assumed, Measurements};
 
 use crate::compare::{self, Compared};
-use crate::finding::{Dependence, FloorSource, Shown, Verdict};
+use crate::finding::{Dependence, FloorSource, NamedEffect, Shown, Verdict};
 use crate::search::{self, Found, still_right};
 
 /// Rows stay above the noise when they are this many times as far off …
@@ -91,7 +91,8 @@ pub(crate) fn bound_by_held_out(
     warnings: &mut Vec<String>,
 ) {
     let named = matches!(found.verdict, Verdict::Named | Verdict::Class);
-    if named && shown.says(is_floor_known(found, used)) != HeldOut::Hold {
+    let says = shown.says(is_floor_known(found, used));
+    if named && (says != HeldOut::Hold || is_strained(found, shown)) {
         misled(found, 0.5);
     }
     // Of a floor that was fitted it is said already that nobody knows it.
@@ -103,6 +104,14 @@ pub(crate) fn bound_by_held_out(
                 .to_owned(),
         );
     }
+}
+
+/// Whether something is larger than is plausible and yet leaves most of the gap open: near as the rest may be to a noise
+/// that nothing told.
+fn is_strained(found: &Found, shown: &Shown) -> bool {
+    let is_beyond = |effect: &NamedEffect| effect.not_addable.as_deref() == Some(search::BEYOND_PLAUSIBLE);
+    let is_open = shown.rows > 0 && shown.closure.is_some_and(|closure| closure < MOSTLY_OPEN);
+    is_open && found.effects.iter().any(is_beyond)
 }
 
 /// What leaves most of the gap open on the very rows that it was fitted to has no name, and cannot be expected

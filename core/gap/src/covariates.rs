@@ -31,8 +31,8 @@ impl Covariates {
         all("temperature", "°C");
         names.extend(neck.iter().map(|joint| (format!("angle of {joint}"), "rad".to_owned())));
         let others = [
-            ("along u", "m"),
-            ("along v", "m"),
+            ("place along u", "m"),
+            ("place along v", "m"),
             ("payload", "kg"),
             ("height of the screen", "m"),
             ("time", "s"),
@@ -40,8 +40,8 @@ impl Covariates {
             ("distance from the eyes", "m"),
             ("distance from the middle of the image", "px"),
             ("distance of the background", "m"),
-            ("along x of the table", "m"),
-            ("along y of the table", "m"),
+            ("place along x of the table", "m"),
+            ("place along y of the table", "m"),
         ];
         names.extend(others.map(|(name, unit)| (name.to_owned(), unit.to_owned())));
         let values =

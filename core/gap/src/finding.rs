@@ -435,7 +435,7 @@ pub struct NextExperiment {
     pub count: usize,
     /// Time that it takes, minutes.
     pub minutes: f64,
-    /// Expected probability of the right name after it.
+    /// How likely the most probable names are the right ones after it.
     pub expected_probability: f64,
     /// The others of the menu, the best first: what, expected probability, minutes.
     pub others: Vec<(String, f64, f64)>,

@@ -1,5 +1,6 @@
 //! The answer in a sentence or two, for someone in the lab.
 
+use crate::compare::OPEN_SIGMAS;
 use crate::finding::{
     Candidate, ClassMember, Finding, FloorSource, FoundParameter, NamedEffect, ShownUnit, Verdict,
 };
@@ -68,6 +69,14 @@ fn no_gap(finding: &Finding) -> String {
             size(shown.before, shown.unit)
         );
     }
+    if comparison.floor_from() == FloorSource::Instrument && comparison.size_sigmas > OPEN_SIGMAS {
+        return format!(
+            "Nothing in the library explains what is left: once the frame is placed, the mean error is {}, and the \
+             instrument alone leaves {}. A few repeats of one pose would tell whether the arm itself scatters so far.",
+            size(shown.before, shown.unit),
+            size(shown.floor, shown.unit)
+        );
+    }
     let approximate = approximate(comparison.floor_from());
     let first = if comparison.is_gap {
         "Model and measurement differ by less than the noise, and nothing in that has a name."
@@ -77,13 +86,16 @@ fn no_gap(finding: &Finding) -> String {
     // What servos do all alike has no name, but no gap does not mean that commands are kept.
     let servos = finding.warnings.iter().find(|words| words.starts_with("the servos give way"));
     let servos = servos.map_or(String::new(), |words| format!(" But {words}."));
-    let placed = if finding.warnings.iter().any(|words| words.contains(WATCHED)) {
-        "Beside what is constant at the place that was watched"
+    let is_placed = comparison.kinds.iter().any(|kind| kind.what.is_placed());
+    let mean = if finding.warnings.iter().any(|words| words.contains(WATCHED)) {
+        "Beside what is constant at the place that was watched, the mean error"
+    } else if is_placed {
+        "Once the frame is placed, the mean error"
     } else {
-        "Once the frame is placed"
+        "The mean error"
     };
     format!(
-        "{first} {placed}, the mean error is {}, and noise alone leaves {}{approximate}.{servos}",
+        "{first} {mean} is {}, and noise alone leaves {}{approximate}.{servos}",
         size(shown.before, shown.unit),
         size(shown.floor, shown.unit)
     )

@@ -61,6 +61,20 @@ fn a_screen_that_was_knocked_and_turned_between_two_passes_is_no_noise() {
 }
 
 #[test]
+fn a_screen_that_was_knocked_far_is_no_row_of_outliers() {
+    let plan = Plan { places: 30, repeats: 2, by_passes: true, ..Plan::default() };
+    for (seed, at_s) in [(1, 300.0), (2, 330.0)] {
+        let mut knocked = present(&touches(&plan, &[], 1), "screen-bumped", "screen", &[0.02, -0.02, 0.05]);
+        knocked.effect = knocked.effect.with_shape(Some(at_s));
+        let finding = found(&plan, &[knocked], seed);
+        println!("{:?}", finding.warnings);
+        assert!(named(&finding, "screen-bumped", "screen").is_some(), "{}", finding.sentence);
+        let set_aside = finding.warnings.iter().find(|words| words.contains("far from all others"));
+        assert_eq!(set_aside, None);
+    }
+}
+
+#[test]
 fn a_drag_is_named_whichever_way_it_grows() {
     // Every finger comes in about as flat here, so which of the two it is stays open, and the interval reaches over both.
     let plan = Plan { places: 60, sides: vec!["plus", "minus"], noise_m: 0.6e-3, ..Plan::default() };

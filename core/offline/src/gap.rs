@@ -139,7 +139,7 @@ pub struct NextReport {
     pub what: String,
     /// Why.
     pub why: String,
-    /// Expected probability of the right name after it.
+    /// How likely the most probable names are the right ones after it.
     pub expected_probability: f64,
     /// How long it takes.
     pub minutes: f64,

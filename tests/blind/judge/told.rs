@@ -36,5 +36,6 @@ fn with_effect(mut case: Value, effect: &NamedEffect) -> Value {
     case["class_probability"] = json!(effect.class_probability);
     case["class"] = class.collect();
     case["runner_up"] = json!(effect.runner_up);
+    case["not_addable"] = json!(effect.not_addable);
     case
 }

@@ -40,7 +40,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
                 format!("{}, about {minutes} min.", format::count(next.count, "measurement")),
             ));
             ui.add_space(space::XS);
-            ui.label(theme::small(ui, "Expected probability of the right name after it"));
+            ui.label(theme::small(ui, "How likely its first name is the right one after it"));
             probability_bar(ui, "After the experiment", next.expected_probability, Role::Predicted);
             ui.add_space(space::S);
             if gap_plan(cx.view).is_some() {

@@ -42,6 +42,8 @@ pub const FEWEST_ROWS: usize = 12;
 const SIGNIFICANT: f64 = 0.01;
 /// … and matters above this size, in standard deviations of one measurement.
 const MATTERS_SIGMAS: f64 = 0.3;
+/// A misfit so many times what an instrument leaves may be a gap, however it goes with what was logged.
+pub(crate) const OPEN_SIGMAS: f64 = 1.0;
 /// Measured and predicted places of one and the same arm go together at least so much (R²).
 const RELATED: f64 = 0.3;
 /// Repeats that scatter further than this are no noise of a robot, m.
@@ -162,12 +164,21 @@ pub(crate) fn compare(
         floor_source: noise.floor.source,
         p_value: misfit.p_value,
         size_sigmas: misfit.size_sigmas,
-        // Without a floor nothing is small against it.
         is_gap: misfit.p_value < SIGNIFICANT && misfit.size_sigmas > MATTERS_SIGMAS
-            || noise.floor.source == FloorSource::Fitted,
+            || is_open(noise.floor.source, misfit.size_sigmas),
         residuals: in_sample(measurements, &assumed, &outlier, &covariates),
     };
     Ok(Compared { comparison, floor: noise.floor, assumed, outlier, covariates, is_related, warnings })
+}
+
+/// Whether it takes a search to tell if there is a gap. Without a floor nothing is small against it; what lies far beyond
+/// the figure of an instrument may be what the arm itself scatters, but a few rows that go with nothing do not say so.
+fn is_open(source: FloorSource, size_sigmas: f64) -> bool {
+    match source {
+        FloorSource::Fitted => true,
+        FloorSource::Instrument => size_sigmas > OPEN_SIGMAS,
+        FloorSource::Repeats | FloorSource::Neighbors => false,
+    }
 }
 
 /// Measured less predicted natural coordinates of every row; `None` where the model sees nothing.
@@ -216,9 +227,15 @@ fn warn_of_noise(floor: &Floor, warnings: &mut Vec<String>) {
         ),
     };
     if let Some(from) = from {
+        let again = if floor.kinds.iter().any(|kind| kind.what == What::Touch) {
+            "Ten touches of the same few places, each from the same side,"
+        } else if floor.kinds.iter().any(|kind| kind.what.is_pose()) {
+            "A few poses, each measured several times and come to from the same side,"
+        } else {
+            "A few places that are seen several times each, the head brought anew in between,"
+        };
         warnings.push(format!(
-            "there are too few repeats to take the noise from them: it was {from}. Ten touches of the same few places, each from \
-             the same side, would tell it"
+            "there are too few repeats to take the noise from them: it was {from}. {again} would tell it"
         ));
     }
     for kind in floor.kinds.iter().filter(|kind| kind.what.is_placed()) {

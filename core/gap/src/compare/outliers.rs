@@ -1,6 +1,6 @@
 //! Rows that nothing around them agrees with.
 
-use plumbline_effects::measurements::{Measurements, What};
+use plumbline_effects::measurements::{Measurements, Observation, What};
 
 use super::neighbors::Points;
 use crate::statistics::{ALIKE, median, robust_sd, stepped_sd};
@@ -43,6 +43,7 @@ pub fn outliers(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> 
             }
         }
         keep_conditions(measurements, residuals, &mut out);
+        keep_changes(measurements, what, residuals, &mut out);
     }
     keep_sets(measurements, &mut out);
     out
@@ -98,15 +99,38 @@ fn keep_conditions(measurements: &Measurements, residuals: &[Option<Vec<f64>>], 
         {
             end += 1;
         }
-        if end - start >= A_CONDITION && alike(&residuals[start..end]) {
+        if end - start >= A_CONDITION && alike(residuals[start..end].iter()) {
             out[start..end].iter_mut().for_each(|out| *out = false);
         }
         start = end.max(start + 1);
     }
 }
 
-fn alike(residuals: &[Option<Vec<f64>>]) -> bool {
-    let known: Vec<&Vec<f64>> = residuals.iter().flatten().collect();
+/// Where from some row of a session on, or up to one, half or more are off, and the same way, something changed there: a screen
+/// that was knocked in the middle is off for its neighbors at some places and not at others.
+fn keep_changes(measurements: &Measurements, what: What, residuals: &[Option<Vec<f64>>], out: &mut [bool]) {
+    let sessions = measurements.rows.iter().map(|row| row.session).max().map_or(0, |last| last + 1);
+    for session in 0..sessions {
+        let is_own = |row: &Observation| row.session == session && row.what == what;
+        let mut own: Vec<usize> = (0..out.len()).filter(|&i| is_own(&measurements.rows[i])).collect();
+        for _ in 0..2 {
+            let has_changed = |first: &usize| {
+                let after = &own[*first..];
+                let off: Vec<usize> = after.iter().copied().filter(|&i| out[i]).collect();
+                let is_condition = off.len() >= A_CONDITION && 2 * off.len() >= after.len();
+                is_condition && alike(off.iter().map(|&i| &residuals[i]))
+            };
+            let changed = (0..own.len()).filter(|&first| out[own[first]]).find(has_changed);
+            if let Some(first) = changed {
+                own[first..].iter().for_each(|&i| out[i] = false);
+            }
+            own.reverse();
+        }
+    }
+}
+
+fn alike<'a>(residuals: impl Iterator<Item = &'a Option<Vec<f64>>>) -> bool {
+    let known: Vec<&Vec<f64>> = residuals.flatten().collect();
     let Some(size) = known.first().map(|first| first.len()) else { return false };
     let length: f64 = known.iter().map(|r| r.iter().map(|v| v * v).sum::<f64>().sqrt()).sum();
     let together: f64 =

@@ -13,6 +13,8 @@ use crate::search::Found;
 
 /// Simulated outcomes.
 const OUTCOMES: usize = 200;
+/// Names that are less probable than this are not in question.
+const IN_QUESTION: f64 = 0.2;
 
 /// What an experiment would tell.
 #[derive(Clone, Debug)]
@@ -23,6 +25,9 @@ pub(super) struct Score {
     pub pair: Option<(usize, usize)>,
     /// Expected probability of the right names after it.
     pub expected: f64,
+    /// How likely the most probable names are the right ones after it ([`in_question`]). More than `expected` where it
+    /// stays open: of two sets that are left with 0.8 and 0.2 the right one has 0.68 in the mean, and is the first in 0.8.
+    pub promised: f64,
     /// What it tells of the sizes of the most probable set: ½ log det, nat.
     pub information: f64,
     /// Standard deviations of those sizes after it over those before, geometric mean.
@@ -81,10 +86,10 @@ pub(super) fn score(
         })
         .collect::<Option<_>>()?;
     let (separation, pair) = separation(rivals, &predicted);
-    let expected = expected(rivals, &predicted, seed);
+    let (expected, promised) = after(rivals, &predicted, seed);
     let columns = stacked(&tangents[0], &used, lines, noise, |tangents| &tangents.effects);
     let (information, doubt_left) = information(&rivals[0], &columns, &own)?;
-    Some(Score { separation, pair, expected, information, doubt_left })
+    Some(Score { separation, pair, expected, promised, information, doubt_left })
 }
 
 /// What is constant of each new stand is not known: in standard deviations of the noise.
@@ -166,13 +171,16 @@ fn separation(rivals: &[Rival], predicted: &[Predicted]) -> (f64, Option<(usize,
     (sum, best.1)
 }
 
-/// Mean over simulated outcomes, the truth drawn from the rivals.
-fn expected(rivals: &[Rival], predicted: &[Predicted], seed: u64) -> f64 {
+/// Means over simulated outcomes, the truth drawn from the rivals: the probability of the right names, and that of
+/// the most probable ones that are in question, which is how often those are right.
+fn after(rivals: &[Rival], predicted: &[Predicted], seed: u64) -> (f64, f64) {
     if rivals.len() < 2 {
-        return rivals.first().map_or(0.0, |_| 1.0);
+        let only = rivals.first().map_or(0.0, |_| 1.0);
+        return (only, only);
     }
+    let in_question = in_question(rivals);
     let mut random = StdRng::seed_from_u64(seed);
-    let mut sum = 0.0;
+    let (mut of_right, mut of_first) = (0.0, 0.0);
     for outcome in 0..OUTCOMES {
         let truth = drawn(rivals, (outcome as f64 + random.random::<f64>()) / OUTCOMES as f64);
         let one = &predicted[truth];
@@ -190,9 +198,35 @@ fn expected(rivals: &[Rival], predicted: &[Predicted], seed: u64) -> f64 {
         let weights: Vec<f64> = logs.iter().map(|log| (log - largest).exp()).collect();
         let whole: f64 = weights.iter().sum();
         let after: Vec<f64> = weights.iter().map(|weight| weight / whole).collect();
-        sum += right(rivals, truth, &after);
+        of_right += right(rivals, truth, &after);
+        let mut of_names = vec![0.0; rivals.len()];
+        in_question.iter().zip(&after).for_each(|(names, share)| of_names[*names] += share);
+        of_first += of_names.iter().copied().fold(0.0, f64::max);
     }
-    sum / OUTCOMES as f64
+    (of_right / OUTCOMES as f64, of_first / OUTCOMES as f64)
+}
+
+/// Which rivals are the same to somebody who reads their names: each one's first that has the same names of those that are
+/// in question. Hundreds of sets have one more effect that hardly does anything.
+fn in_question(rivals: &[Rival]) -> Vec<usize> {
+    let probable = |name: &String| -> f64 {
+        rivals.iter().filter(|rival| rival.names.contains(name)).map(|rival| rival.probability).sum()
+    };
+    let names: Vec<Vec<&String>> = rivals
+        .iter()
+        .map(|rival| {
+            let own = rival.names.iter();
+            let mut probable: Vec<&String> = own.filter(|name| probable(name) >= IN_QUESTION).collect();
+            // One of many of which none is probable is that one all the same.
+            if probable.is_empty() {
+                probable = rival.names.iter().collect();
+            }
+            probable.sort_unstable();
+            probable
+        })
+        .collect();
+    let first = |own: &Vec<&String>| names.iter().position(|other| other == own).unwrap_or(0);
+    names.iter().map(first).collect()
 }
 
 /// The rival in whose part of 0–1 a number lies.
@@ -223,4 +257,51 @@ fn information(rival: &Rival, columns: &DMatrix<f64>, own: &DMatrix<f64>) -> Opt
     let det = (DMatrix::identity(count, count) + &rival.covariance * tells).determinant();
     let information = 0.5 * det.max(1.0).ln();
     Some((information, (-information / count as f64).exp()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rival(name: &str, probability: f64) -> Rival {
+        Rival {
+            names: vec![name.to_owned()],
+            probability,
+            assumed: Assumed::default(),
+            covariance: DMatrix::zeros(0, 0),
+        }
+    }
+
+    fn at(mean: f64) -> Predicted {
+        let root = Cholesky::new(DMatrix::identity(1, 1)).expect("positive");
+        Predicted { mean: DVector::from_element(1, mean), root, log_det: 0.0 }
+    }
+
+    #[test]
+    fn what_is_promised_is_how_often_the_first_name_is_right() {
+        let rivals = [rival("play", 0.5), rival("sag", 0.5)];
+        // One number tells them apart by two standard deviations: it falls on the right side of the middle in Φ(1).
+        let (expected, promised) = after(&rivals, &[at(0.0), at(2.0)], 7);
+        assert!((promised - 0.841).abs() < 0.02, "{promised}");
+        assert!(expected < promised - 0.03, "{expected} {promised}");
+        let (expected, promised) = after(&rivals, &[at(0.0), at(0.0)], 7);
+        assert!((expected - 0.5).abs() < 1e-9 && (promised - 0.5).abs() < 1e-9, "{expected} {promised}");
+        let (expected, promised) = after(&rivals, &[at(0.0), at(20.0)], 7);
+        assert!(expected > 0.99 && promised > 0.99, "{expected} {promised}");
+    }
+
+    #[test]
+    fn what_hardly_does_anything_beside_it_makes_a_name_no_less_likely() {
+        let mut rivals: Vec<Rival> = (0..10).map(|_| rival("play", 0.09)).collect();
+        for (k, with) in rivals.iter_mut().enumerate().skip(1) {
+            with.names.push(format!("trace {k}"));
+        }
+        rivals.push(rival("sag", 0.1));
+        assert_eq!(in_question(&rivals)[9..], [0, 10]);
+        let one_of_six: Vec<Rival> = (0..6).map(|k| rival(&format!("joint {k}"), 1.0 / 6.0)).collect();
+        assert_eq!(in_question(&one_of_six), [0, 1, 2, 3, 4, 5]);
+        let alike: Vec<Predicted> = (0..11).map(|k| at(if k < 10 { 0.0 } else { 20.0 })).collect();
+        let (_, promised) = after(&rivals, &alike, 7);
+        assert!(promised > 0.99, "{promised}");
+    }
 }

@@ -79,7 +79,7 @@ pub(crate) fn advise(
     let most = scored.iter().max_by(|a, b| a.1.separation.total_cmp(&b.1.separation));
     let most = most.filter(|_| watched).map(|(trial, score)| {
         let why = score.pair.map_or(String::new(), |(a, b)| words::tells(&rivals[a], &rivals[b]));
-        answer(trial, why, score.expected, &[])
+        answer(trial, why, score.promised, &[])
     });
     Ok(tell_apart(scored, &rivals, now).or(most).map(|next| beside_many(next, found.many)))
 }
@@ -138,9 +138,9 @@ fn best(scored: &[(&Trial, Score)], now: f64) -> Option<usize> {
 fn tell_apart(mut scored: Vec<(&Trial, Score)>, rivals: &[Rival], now: f64) -> Option<NextExperiment> {
     let (trial, score) = scored.remove(best(&scored, now)?);
     scored.retain(|(_, score)| score.expected >= now + LEAST_GAIN);
-    scored.sort_by(|a, b| b.1.expected.total_cmp(&a.1.expected));
+    scored.sort_by(|a, b| b.1.promised.total_cmp(&a.1.promised));
     let why = score.pair.map_or(String::new(), |(a, b)| words::tells(&rivals[a], &rivals[b]));
-    Some(answer(trial, why, score.expected, &scored))
+    Some(answer(trial, why, score.promised, &scored))
 }
 
 fn pin_down(
@@ -156,7 +156,7 @@ fn pin_down(
     }
     let (trial, score) = scored.remove(0);
     let why = words::pins(rivals.first()?, 1.0 - score.doubt_left, many.is_none());
-    Some(answer(trial, why, score.expected.max(now), &scored))
+    Some(answer(trial, why, score.promised.max(now), &scored))
 }
 
 /// Whether the sizes of the most probable set are known well enough.
@@ -189,7 +189,7 @@ fn answer(
         expected_probability,
         others: others
             .iter()
-            .map(|(trial, score)| (trial.what.clone(), score.expected, trial.minutes))
+            .map(|(trial, score)| (trial.what.clone(), score.promised, trial.minutes))
             .collect(),
     }
 }

@@ -120,7 +120,7 @@ pub(super) fn rivals(
         }
     }
     for (what, on) in [
-        (What::Touch, &["along u", "along v", "time", "duration of the move"][..]),
+        (What::Touch, &["place along u", "place along v", "time", "duration of the move"][..]),
         (What::Pose, &["time"]),
         (What::OrientedPose, &["time"]),
         (What::Place, &EYES),
@@ -245,8 +245,8 @@ const EYES: [&str; 6] = [
     "distance from the eyes",
     "distance from the middle of the image",
     "distance of the background",
-    "along x of the table",
-    "along y of the table",
+    "place along x of the table",
+    "place along y of the table",
     "time",
 ];
 
