@@ -52,6 +52,14 @@ impl Outbox {
         self.actions.push(action);
     }
 
+    /// Forgets all that was asked for but a stop.
+    pub fn keep_stop_only(&mut self) {
+        self.commands.clear();
+        self.actions.retain(|action| matches!(action, Action::Stop));
+        self.jog = None;
+        self.taken = None;
+    }
+
     /// Asks for a calibration to be written.
     pub fn export(&mut self, what: Exported, format: ExportFormat) {
         self.act(Action::Export(what, format));

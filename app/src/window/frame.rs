@@ -113,6 +113,11 @@ impl PlumblineWindow {
             outbox.act(action);
         }
         self.draw_frame(ui, &mut outbox);
+        // A click beside a sheet closes the sheet and does nothing else: what lies below may move the arm.
+        let is_covered = self.ask.is_some() || self.palette.is_open();
+        if is_covered && ctx.input(|input| input.pointer.any_down() || input.pointer.any_released()) {
+            outbox.keep_stop_only();
+        }
         self.show_touch_window(&ctx);
         self.draw_sheets(&ctx, escape_pressed, &mut outbox);
         self.take_drops(&ctx, &mut outbox);

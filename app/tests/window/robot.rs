@@ -327,6 +327,25 @@ fn letting_go_asks_first() {
 }
 
 #[test]
+fn a_click_beside_a_sheet_closes_it_and_does_nothing_else() {
+    let fake = Fake::over(everything());
+    let mut window = fake.window(on_robot());
+    click(&mut window, "Let all joints go limp…");
+    assert!(shows(&window, "Let all go limp"));
+    click(&mut window, "Home");
+    window.run_steps(2);
+    assert_eq!(robot_commands(&fake), [], "nothing was asked for with a sheet open");
+    assert!(!shows(&window, "Let all go limp"), "the sheet is closed");
+    click(&mut window, "Home");
+    assert_eq!(robot_commands(&fake), [RobotCommand::Preview(Destination::Pose { name: "home".to_owned() })]);
+    // STOP is no such thing.
+    click(&mut window, "Let all joints go limp…");
+    fake.take_stops();
+    click(&mut window, "STOP");
+    assert!(fake.take_stops() > 0);
+}
+
+#[test]
 fn an_own_pose_is_deleted_at_the_second_click() {
     let fake = Fake::over(everything());
     let mut window = fake.window_of_size(on_robot(), [1440.0, 1400.0]);

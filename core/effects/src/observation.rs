@@ -124,7 +124,8 @@ pub struct Observation {
     /// Encoder readings, the same way.
     pub encoder_rad: Option<Vec<f64>>,
     /// How far each servo lags in this pose, rad, where repeats tell it from what encoders happen to read: an
-    /// expectation of commanded less encoder angle in which this row's own reading has no part.
+    /// expectation of commanded less encoder angle in which this row's own reading has no part, unless repeats spread
+    /// further than readings do.
     pub usual_lag_rad: Option<Vec<f64>>,
     /// What of that goes with the load on the joint, rad: the servo gave way by it.
     pub given_way_rad: Option<Vec<f64>>,

@@ -294,7 +294,8 @@ fn capital(text: &str) -> String {
 
 /// What the rest depends on, the first two: several things may depend on one, which is told once.
 fn told_once<'a>(on: impl Iterator<Item = &'a str>) -> Vec<String> {
-    let article = |on: &str| if on.starts_with("where ") { on.to_owned() } else { format!("the {on}") };
+    let is_clause = |on: &str| on.starts_with("where ") || on.starts_with("how ");
+    let article = |on: &str| if is_clause(on) { on.to_owned() } else { format!("the {on}") };
     let mut told: Vec<String> = vec![];
     for on in on.map(|on| article(on.trim_start_matches("the "))) {
         if told.len() < 2 && !told.contains(&on) {

@@ -251,6 +251,7 @@ fn tables_that_cannot_be_used_say_where() {
         Box::leak(format!("{HEAD}0.1,0.2,1.0,2.0\n{text}\n").into_boxed_str())
     };
     refused(&with(""), &["touches.csv", "is empty", "column names"]);
+    refused(&[("touches.csv", HEAD)], &["is no session", "session.toml"]);
     refused(
         &with("cmd_a_rad,touch_u_px,touch_v_px\n"),
         &["touches.csv", "line 1", "cmd_b_rad", "missing", "chain"],

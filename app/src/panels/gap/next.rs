@@ -23,11 +23,20 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             EmptyState::empty(Message::new("Repeat some poses", text)).show(ui);
             return;
         }
-        let text = match shown.finding.verdict {
-            Verdict::NoGap => "Model and measurement agree; there is nothing to tell apart.",
-            _ => "Nothing is left to tell apart with the experiments of the menu.",
+        let (what, text) = match shown.finding.verdict {
+            Verdict::NoGap => {
+                ("No experiment is needed", "Model and measurement agree; there is nothing to tell apart.")
+            }
+            _ if shown.finding.many.is_some() => (
+                "No experiment is worth its time",
+                "So much is a little off at once that none of them would make a name likely. What was found can be added \
+                 and proven all the same.",
+            ),
+            _ => {
+                ("No experiment is needed", "Nothing is left to tell apart with the experiments of the menu.")
+            }
         };
-        EmptyState::empty(Message::new("No experiment is needed", text)).show(ui);
+        EmptyState::empty(Message::new(what, text)).show(ui);
         return;
     };
     padded(ui, |ui| {

@@ -29,6 +29,35 @@ pub fn levers(measurements: &Measurements, assumed: &Assumed, row: usize) -> Vec
     tangents.effects.column_iter().map(|column| column.iter().copied().collect()).collect()
 }
 
+/// What it does to the coordinates of a row that its joints lag as they do, were the angles logged too early; empty where they
+/// lag alike in all repeats, or no encoder is logged.
+pub fn lagged(measurements: &Measurements, assumed: &Assumed, row: usize) -> Vec<f64> {
+    let row = &measurements.rows[row];
+    let Some(arm) = measurements.apparatus(row).arm.as_ref().filter(|_| row.usual_lag_rad.is_some()) else {
+        return vec![];
+    };
+    let early = Effect::sites(Kind::EarlyLog, Some(arm), None);
+    let Some(of_all) = early.into_iter().find(|one| one.site.is_empty()) else { return vec![] };
+    let tangents = measurements.tangents(row, assumed, &[of_all]);
+    tangents.map_or(vec![], |tangents| tangents.effects.column(0).iter().copied().collect())
+}
+
+/// How far the joints lagged: where that differs between repeats, angles that were logged too early go with it.
+pub fn by_lag(rows: &[Repeat], spread: &Spread, fits: usize) -> Option<Structure> {
+    if rows.iter().any(|row| row.lagged.is_empty()) {
+        return None;
+    }
+    let column = column(rows, spread, &|row, c| row.lagged[c])?;
+    let off = spread.whitened();
+    let rest = rest_of(&off, &[&column])?;
+    let free = (spread.free() * spread.counted.len() as f64 - 1.0).max(1.0);
+    let lost = off.norm_squared() - rest.norm_squared();
+    let p_value = f_tail(lost / (rest.norm_squared() / free).max(1e-300), 1.0, free) * fits as f64;
+    let shares = spread.shares_of(&rest, 1.0 / spread.counted.len() as f64);
+    (p_value <= SIGNIFICANT)
+        .then(|| Structure::new("how far joints stop short of their goals".to_owned(), p_value, shares))
+}
+
 /// How the joints came, the one that tells most first, as long as each is beyond doubt. `fits`: all that is tried.
 pub fn by_levers(rows: &[Repeat], spread: &Spread, joints: &[String], fits: usize) -> Option<Structure> {
     let counted = &spread.counted;
@@ -69,17 +98,18 @@ fn columns(rows: &[Repeat], joint: usize, spread: &Spread) -> Option<Vec<DVector
     let by_side = |turned_rad: f64| (turned_rad / SIDE_RAD).tanh();
     let by_way = |turned_rad: f64| (turned_rad / REMEMBERED_RAD).tanh();
     let laws: [&dyn Fn(f64) -> f64; 2] = [&by_side, &by_way];
-    let all: Vec<DVector<f64>> =
-        laws.into_iter().filter_map(|law| column(rows, joint, spread, law)).collect();
+    let of = |law: &dyn Fn(f64) -> f64| {
+        column(rows, spread, &|row, c| {
+            let turned_rad = row.turned_rad.get(joint).copied().unwrap_or(0.0);
+            row.levers.get(joint).map_or(0.0, |lever| lever[c]) * law(turned_rad)
+        })
+    };
+    let all: Vec<DVector<f64>> = laws.into_iter().filter_map(of).collect();
     (!all.is_empty()).then_some(all)
 }
 
-fn column(rows: &[Repeat], joint: usize, spread: &Spread, law: &dyn Fn(f64) -> f64) -> Option<DVector<f64>> {
+fn column(rows: &[Repeat], spread: &Spread, value: &dyn Fn(&Repeat, usize) -> f64) -> Option<DVector<f64>> {
     let counted = &spread.counted;
-    let value = |row: &Repeat, c: usize| {
-        let turned_rad = row.turned_rad.get(joint).copied().unwrap_or(0.0);
-        row.levers.get(joint).map_or(0.0, |lever| lever[c]) * law(turned_rad)
-    };
     let mut means = std::collections::BTreeMap::<usize, (Vec<f64>, f64)>::new();
     for row in rows {
         let (sums, count) = means.entry(row.cell).or_insert_with(|| (vec![0.0; counted.len()], 0.0));
@@ -138,6 +168,7 @@ mod tests {
                     at: None,
                     off,
                     levers: vec![lever],
+                    lagged: vec![],
                 }
             })
             .collect();

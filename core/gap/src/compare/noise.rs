@@ -12,7 +12,7 @@ use plumbline_effects::measurements::{Measurements, Unit, What};
 use plumbline_model::decompose;
 
 use super::drift::{Deviation, Drift, drift};
-use super::levers::levers;
+use super::levers::{lagged, levers};
 use super::neighbors::Points;
 use super::structure::{Repeat, Structure, structure, wobble};
 use super::sway::sway;
@@ -330,6 +330,7 @@ fn of_stands(measurements: &Measurements, residuals: &[Option<Vec<f64>>], what: 
             at: None,
             off,
             levers: vec![],
+            lagged: vec![],
         }
     };
     looks.into_values().map(one).collect()
@@ -417,6 +418,7 @@ fn repeats(
             at: places.get(&row.cell).copied(),
             off: residual.iter().zip(sum).map(|(value, sum)| value - sum / count).collect(),
             levers: levers(measurements, assumed, i),
+            lagged: lagged(measurements, assumed, i),
         });
     }
     all

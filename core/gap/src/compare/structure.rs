@@ -7,7 +7,7 @@
 
 use nalgebra::DMatrix;
 
-use super::levers::by_levers;
+use super::levers::{by_lag, by_levers};
 use super::spread::{SIGNIFICANT, Spread};
 use crate::statistics::robust_sd;
 
@@ -42,6 +42,8 @@ pub struct Repeat {
     pub off: Vec<f64>,
     /// What the turn of each joint does to each coordinate, where that differs from pose to pose; else empty.
     pub levers: Vec<Vec<f64>>,
+    /// What it does to each coordinate that the joints lag as they do; empty where they lag alike in all repeats.
+    pub lagged: Vec<f64>,
 }
 
 /// What repeats depend on.
@@ -78,8 +80,10 @@ pub fn structure(rows: &[Repeat], free: f64, when: &str, joints: &[String]) -> O
     let spread = Spread::new(tamed(rows, width), free);
     let has_levers = rows.iter().all(|row| !row.levers.is_empty());
     let tried = covariates(rows, when, joints);
-    let fits = tried.len() + if has_levers { joints.len() } else { 0 };
-    let mut best = if has_levers { by_levers(rows, &spread, joints, fits) } else { None };
+    let fits = tried.len() + 1 + if has_levers { joints.len() } else { 0 };
+    let by_levers = if has_levers { by_levers(rows, &spread, joints, fits) } else { None };
+    let by_lag = by_lag(rows, &spread, fits);
+    let mut best = by_levers.into_iter().chain(by_lag).min_by(|a, b| a.p_value.total_cmp(&b.p_value));
     for (on, columns) in tried {
         let Some(design) = within_cells(rows, &columns) else { continue };
         let Some(left) = spread.fitted_by(&design) else { continue };
@@ -226,6 +230,7 @@ mod tests {
                     at: Some([place(i, 7), place(i, 11)]),
                     off,
                     levers: vec![],
+                    lagged: vec![],
                 }
             })
             .collect();

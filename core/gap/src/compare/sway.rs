@@ -49,6 +49,7 @@ pub fn sway(measurements: &Measurements, residuals: &[Option<Vec<f64>>], what: W
         at: None,
         off: residual.iter().zip(&means).map(|(value, mean)| value - mean).collect(),
         levers: vec![],
+        lagged: vec![],
     };
     let rows: Vec<Repeat> = timed.iter().map(one).collect();
     wobble(&rows, count - 1.0).map(|found| Structure { of: OF_ALL, ..found })

@@ -33,6 +33,8 @@ pub use plan::plan_for;
 const SETTLED: f64 = 0.9;
 /// An experiment that brings less is none.
 const LEAST_GAIN: f64 = 0.02;
+/// Beside much that is a little off, names have to become as likely as this.
+const LIKELY: f64 = 0.5;
 /// Experiments this close to the best one are as good; the quickest for its worth is taken.
 const AS_GOOD: f64 = 0.05;
 /// Sizes known to this share are pinned down, one standard deviation.
@@ -72,7 +74,7 @@ pub(crate) fn advise(
         }
     }
     if settled {
-        return Ok(pin_down(scored, &rivals, now, found.many).map(|next| beside_many(next, found.many)));
+        return Ok(pin_down(scored, &rivals, now).and_then(|next| beside_many(next, found.many)));
     }
     // Of what was watched a turn and a shift of the image are told apart by little else than more of the view.
     let watched = measurements.rows.iter().any(|row| row.stand.is_some());
@@ -81,15 +83,17 @@ pub(crate) fn advise(
         let why = score.pair.map_or(String::new(), |(a, b)| words::tells(&rivals[a], &rivals[b]));
         answer(trial, why, score.promised, &[])
     });
-    Ok(tell_apart(scored, &rivals, now).or(most).map(|next| beside_many(next, found.many)))
+    Ok(tell_apart(scored, &rivals, now).or(most).and_then(|next| beside_many(next, found.many)))
 }
 
-/// Where everything probably is a little off at once, an experiment that tells names apart leaves that as it is.
-fn beside_many(mut next: NextExperiment, many: Option<f64>) -> NextExperiment {
-    let few = 1.0 - many.unwrap_or(0.0);
+/// Where everything probably is a little off at once, an experiment that tells names apart leaves that as it is: one that
+/// makes no name likely is none.
+fn beside_many(mut next: NextExperiment, many: Option<f64>) -> Option<NextExperiment> {
+    let Some(many) = many else { return Some(next) };
+    let few = 1.0 - many;
     next.expected_probability *= few;
     next.others.iter_mut().for_each(|(_, expected, _)| *expected *= few);
-    next
+    (next.expected_probability >= LIKELY).then_some(next)
 }
 
 /// Fills [`NamedEffect::split_by`] of every effect that may have another name.
@@ -143,19 +147,14 @@ fn tell_apart(mut scored: Vec<(&Trial, Score)>, rivals: &[Rival], now: f64) -> O
     Some(answer(trial, why, score.promised, &scored))
 }
 
-fn pin_down(
-    mut scored: Vec<(&Trial, Score)>,
-    rivals: &[Rival],
-    now: f64,
-    many: Option<f64>,
-) -> Option<NextExperiment> {
+fn pin_down(mut scored: Vec<(&Trial, Score)>, rivals: &[Rival], now: f64) -> Option<NextExperiment> {
     let per_minute = |(trial, score): &(&Trial, Score)| score.information / trial.minutes;
     scored.sort_by(|a, b| per_minute(b).total_cmp(&per_minute(a)));
     if scored.is_empty() {
         return None;
     }
     let (trial, score) = scored.remove(0);
-    let why = words::pins(rivals.first()?, 1.0 - score.doubt_left, many.is_none());
+    let why = words::pins(rivals.first()?, 1.0 - score.doubt_left);
     Some(answer(trial, why, score.promised.max(now), &scored))
 }
 

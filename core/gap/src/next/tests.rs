@@ -217,10 +217,9 @@ fn settled_names_need_nothing_or_a_narrower_interval() {
     let open = found(&made, Verdict::Named, &[(&[small], 1.0)]);
     let next = advised(&made, &open).expect("its size is hardly known");
     assert!(next.why.starts_with("The names are settled"), "{next:?}");
+    assert!(next.expected_probability > 0.9, "{next:?}");
     // Where everything is a little off no experiment makes them sure.
-    let crowd = advised(&made, &Found { many: Some(0.9), ..open }).expect("its size is hardly known");
-    assert!(crowd.why.starts_with("So much is off at once"), "{crowd:?}");
-    assert!(crowd.expected_probability < 0.11 && next.expected_probability > 0.9, "{crowd:?}");
+    assert_eq!(advised(&made, &Found { many: Some(0.9), ..open }), None);
 }
 
 #[test]

@@ -62,12 +62,12 @@ pub(super) fn tells(a: &Rival, b: &Rival) -> String {
 }
 
 /// How much better sizes will be known.
-pub(super) fn pins(rival: &Rival, less_doubt: f64, are_settled: bool) -> String {
+pub(super) fn pins(rival: &Rival, less_doubt: f64) -> String {
     let titles: Vec<String> =
         rival.assumed.effects.iter().map(|present| format!("“{}”", present.effect.title)).collect();
-    let names = match are_settled {
-        true => "The names are settled",
-        false => "So much is off at once that no name gets sure by it",
-    };
-    format!("{names}; it narrows the intervals of {} by {:.0} %", titles.join(" and "), 100.0 * less_doubt)
+    format!(
+        "The names are settled; it narrows the intervals of {} by {:.0} %",
+        titles.join(" and "),
+        100.0 * less_doubt
+    )
 }

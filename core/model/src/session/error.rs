@@ -33,6 +33,12 @@ pub enum SessionError {
         /// The path.
         folder: PathBuf,
     },
+    /// A folder of something else.
+    #[error("{} is no session: it has no session.toml. Choose the folder that holds one beside its tables", folder.display())]
+    NoManifest {
+        /// The folder.
+        folder: PathBuf,
+    },
     /// The manifest cannot be used.
     #[error(transparent)]
     Manifest(#[from] FormatError),

@@ -74,7 +74,11 @@ impl Session {
         if !folder.is_dir() {
             return Err(SessionError::NotAFolder { folder: folder.to_path_buf() });
         }
-        let manifest = Manifest::read(&folder.join(names::MANIFEST))?;
+        let manifest = folder.join(names::MANIFEST);
+        if !files::present(&manifest)? {
+            return Err(SessionError::NoManifest { folder: folder.to_path_buf() });
+        }
+        let manifest = Manifest::read(&manifest)?;
         let existing = |name: &str| -> Result<Option<PathBuf>, SessionError> {
             let file = folder.join(name);
             Ok(files::present(&file)?.then_some(file))
