@@ -1,10 +1,13 @@
 //! What the panels ask for during a frame. Panels change nothing themselves: all of it is
 //! carried out after the frame, in one place.
 
-use plumbline_engine::{Command, ExportFormat, Exported, JogRates, ProbePoint, Products};
+use plumbline_engine::{
+    Command, ExportFormat, Exported, GraspCommand, JogRates, ProbePoint, Products, TouchCommand,
+    TrialsCommand,
+};
 use plumbline_widgets::texture::Picture;
 
-use super::{Action, Pane, Table};
+use super::{Action, GraspAction, Pane, Table, TouchAction};
 
 /// Collected while a frame is drawn.
 #[derive(Default)]
@@ -52,10 +55,25 @@ impl Outbox {
         self.actions.push(action);
     }
 
-    /// Forgets all that was asked for but a stop.
-    pub fn keep_stop_only(&mut self) {
-        self.commands.clear();
-        self.actions.retain(|action| matches!(action, Action::Stop));
+    /// Forgets all that was asked for but what makes an arm hold.
+    pub fn keep_what_halts(&mut self) {
+        self.commands.retain(|command| {
+            matches!(
+                command,
+                Command::Touch(TouchCommand::Pause)
+                    | Command::Grasp(GraspCommand::Pause | GraspCommand::End)
+                    | Command::Trials(TrialsCommand::Pause)
+            )
+        });
+        self.actions.retain(|action| {
+            matches!(
+                action,
+                Action::Stop
+                    | Action::CancelJob
+                    | Action::Grasp(GraspAction::Pause | GraspAction::End)
+                    | Action::Touch(TouchAction::Pause)
+            )
+        });
         self.jog = None;
         self.taken = None;
     }

@@ -114,9 +114,9 @@ impl PlumblineWindow {
         }
         self.draw_frame(ui, &mut outbox);
         // A click beside a sheet closes the sheet and does nothing else: what lies below may move the arm.
-        let is_covered = self.ask.is_some() || self.palette.is_open();
+        let is_covered = self.ask.is_some() || self.palette.is_open() || self.notices.is_history_open();
         if is_covered && ctx.input(|input| input.pointer.any_down() || input.pointer.any_released()) {
-            outbox.keep_stop_only();
+            outbox.keep_what_halts();
         }
         self.show_touch_window(&ctx);
         self.draw_sheets(&ctx, escape_pressed, &mut outbox);

@@ -127,6 +127,8 @@ pub struct Observation {
     /// expectation of commanded less encoder angle in which this row's own reading has no part, unless repeats spread
     /// further than readings do.
     pub usual_lag_rad: Option<Vec<f64>>,
+    /// Whether the row's own reading has a part in that.
+    pub has_own_lag: bool,
     /// What of that goes with the load on the joint, rad: the servo gave way by it.
     pub given_way_rad: Option<Vec<f64>>,
     /// Last motion of each joint: −1, 0 (not known) or 1.
@@ -198,6 +200,7 @@ impl Observation {
             commanded_rad: None,
             encoder_rad: None,
             usual_lag_rad: None,
+            has_own_lag: false,
             given_way_rad: None,
             direction: vec![],
             payload_kg: 0.0,

@@ -91,8 +91,9 @@ pub(crate) fn bound_by_held_out(
     warnings: &mut Vec<String>,
 ) {
     let named = matches!(found.verdict, Verdict::Named | Verdict::Class);
-    let says = shown.says(is_floor_known(found, used));
-    if named && (says != HeldOut::Hold || is_strained(found, shown)) {
+    let is_known = is_floor_known(found, used);
+    let says = shown.says(is_known);
+    if named && (says != HeldOut::Hold || !is_known && is_strained(found, shown)) {
         misled(found, 0.5);
     }
     // Of a floor that was fitted it is said already that nobody knows it.
@@ -106,12 +107,12 @@ pub(crate) fn bound_by_held_out(
     }
 }
 
-/// Whether something is larger than is plausible and yet leaves most of the gap open: near as the rest may be to a noise
+/// Whether what does most is larger than is plausible and yet leaves most of the gap open: near as the rest may be to a noise
 /// that nothing told.
 fn is_strained(found: &Found, shown: &Shown) -> bool {
     let is_beyond = |effect: &NamedEffect| effect.not_addable.as_deref() == Some(search::BEYOND_PLAUSIBLE);
     let is_open = shown.rows > 0 && shown.closure.is_some_and(|closure| closure < MOSTLY_OPEN);
-    is_open && found.effects.iter().any(is_beyond)
+    is_open && found.effects.first().is_some_and(is_beyond)
 }
 
 /// What leaves most of the gap open on the very rows that it was fitted to has no name, and cannot be expected

@@ -23,6 +23,9 @@ pub enum Verdict {
     NotInLibrary,
 }
 
+/// A misfit so many times what an instrument leaves may be a gap, however it goes with what was logged.
+pub(crate) const OPEN_SIGMAS: f64 = 1.0;
+
 impl Finding {
     /// Effects that can be added to a model, by place: those with a name, and those that close a part of
     /// the gap.
@@ -38,7 +41,8 @@ impl Finding {
 
     /// Whether model and measurement agree. Where nothing told the noise, a gap without a name is no agreement.
     pub fn is_all_clear(&self) -> bool {
-        self.verdict == Verdict::NoGap && self.comparison.is_noise_known()
+        let is_known = self.comparison.is_noise_known() && !self.comparison.is_beyond_instrument();
+        self.verdict == Verdict::NoGap && is_known
     }
 
     /// Whether the question was answered: with a name, or with an agreement within a noise that is known.
@@ -139,6 +143,12 @@ impl Comparison {
     /// Where the noise floor comes from; files that do not say so say whether it was repeats.
     pub fn floor_from(&self) -> FloorSource {
         if self.floor_from_repeats { FloorSource::Repeats } else { self.floor_source }
+    }
+
+    /// Whether the misfit lies so far beyond what an instrument says of itself that the arm itself may scatter so far, or a
+    /// gap has no name.
+    pub fn is_beyond_instrument(&self) -> bool {
+        self.floor_from() == FloorSource::Instrument && self.size_sigmas > OPEN_SIGMAS
     }
 
     /// Whether anything but the best model tells the noise.

@@ -1,6 +1,5 @@
 //! The answer in a sentence or two, for someone in the lab.
 
-use crate::compare::OPEN_SIGMAS;
 use crate::finding::{
     Candidate, ClassMember, Finding, FloorSource, FoundParameter, NamedEffect, ShownUnit, Verdict,
 };
@@ -69,7 +68,7 @@ fn no_gap(finding: &Finding) -> String {
             size(shown.before, shown.unit)
         );
     }
-    if comparison.floor_from() == FloorSource::Instrument && comparison.size_sigmas > OPEN_SIGMAS {
+    if comparison.is_beyond_instrument() {
         return format!(
             "Nothing in the library explains what is left: once the frame is placed, the mean error is {}, and the \
              instrument alone leaves {}. A few repeats of one pose would tell whether the arm itself scatters so far.",

@@ -29,7 +29,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             }
             _ if shown.finding.many.is_some() => (
                 "No experiment is worth its time",
-                "So much is a little off at once that none of them would make a name likely. What was found can be added \
+                "So much is a little off at once that none of them would tell every name. What was found can be added \
                  and proven all the same.",
             ),
             _ => {

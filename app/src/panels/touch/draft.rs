@@ -12,7 +12,7 @@ pub fn keep_up(ui: &Ui, cx: &mut PanelContext<'_>) {
     let planned = cx.view.touch.plan.as_ref().map(|plan| &plan.options);
     let draft = &mut cx.state.touch.draft;
     draft.follow(planned);
-    let held = ui.input(|input| input.pointer.any_down());
+    let held = ui.input(|input| input.pointer.any_down() || input.pointer.any_released());
     let possible = Action::Touch(TouchAction::Plan(Preset::First)).refusal(cx.view).is_none();
     if draft.changed
         && !held

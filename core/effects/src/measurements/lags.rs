@@ -27,6 +27,9 @@ const ROWS_PER_COLUMN: usize = 8;
 /// Readings of an encoder of 4096 steps (1.5 mrad) spread by so much, rad, and at most by so much.
 const USUAL_NOISE_RAD: f64 = 0.6e-3;
 const MOST_NOISE_RAD: f64 = 1.5e-3;
+/// Degrees of freedom that tell a spread, and a standard deviation over the median distance.
+const FEWEST_FREE: usize = 20;
+const NORMAL: f64 = 1.4826;
 /// Keeps columns that do not vary from being solved for.
 const RIDGE: f64 = 1e-6;
 
@@ -43,7 +46,9 @@ type Cells = BTreeMap<usize, (f64, f64)>;
 
 /// Fills in the usual lag of every row that has repeats, and what of it goes with the load.
 pub(super) fn complete(rows: &mut [Observation], apparatuses: &[Apparatus]) {
-    rows.iter_mut().for_each(|row| (row.usual_lag_rad, row.given_way_rad) = (None, None));
+    rows.iter_mut().for_each(|row| {
+        (row.usual_lag_rad, row.given_way_rad, row.has_own_lag) = (None, None, false);
+    });
     for (session, apparatus) in apparatuses.iter().enumerate() {
         let Some(arm) = &apparatus.arm else { continue };
         let mut counts: BTreeMap<usize, usize> = BTreeMap::new();
@@ -72,8 +77,10 @@ pub(super) fn complete(rows: &mut [Observation], apparatuses: &[Apparatus]) {
                 })
                 .collect();
             let by_load = by_load(&lags);
-            for (i, lag_rad) in usual(&lags) {
+            let differs = differs(&lags);
+            for (i, lag_rad) in usual(&lags, differs) {
                 rows[i].usual_lag_rad.get_or_insert_with(|| vec![0.0; arm.len()])[j] = lag_rad;
+                rows[i].has_own_lag |= differs > 0.0;
             }
             for lag in &lags {
                 let given_way = rows[lag.row].given_way_rad.get_or_insert_with(|| vec![0.0; arm.len()]);
@@ -83,8 +90,30 @@ pub(super) fn complete(rows: &mut [Observation], apparatuses: &[Apparatus]) {
     }
 }
 
-/// The expected lag of each row of one joint.
-fn usual(lags: &[Lag]) -> Vec<(usize, f64)> {
+/// How much of what a row lags beyond the others of its cell is there, 0–1. No reading is off so far that repeats spread by
+/// more than a step or so: what does lags differently indeed. By the median, since one reading may be far off.
+fn differs(lags: &[Lag]) -> f64 {
+    let mut cells = BTreeMap::<usize, Vec<f64>>::new();
+    lags.iter().for_each(|lag| cells.entry(lag.cell).or_default().push(lag.lag_rad));
+    cells.retain(|_, own| own.len() > 1);
+    let mut off: Vec<f64> = cells
+        .values()
+        .flat_map(|own| {
+            let count = own.len() as f64;
+            let mean = own.iter().sum::<f64>() / count;
+            own.iter().map(move |lag_rad| (lag_rad - mean).abs() * (count / (count - 1.0)).sqrt())
+        })
+        .collect();
+    if off.len() < cells.len() + FEWEST_FREE {
+        return 0.0;
+    }
+    off.sort_by(f64::total_cmp);
+    let spread_rad = NORMAL * off[off.len() / 2];
+    if spread_rad > MOST_NOISE_RAD { 1.0 - (USUAL_NOISE_RAD / spread_rad).powi(2) } else { 0.0 }
+}
+
+/// The expected lag of each row of one joint; `differs`: how much its own reading says.
+fn usual(lags: &[Lag], differs: f64) -> Vec<(usize, f64)> {
     let fit = fit(lags, if is_few(lags) { &ALL[..1] } else { &ALL });
     let of_fit =
         |lag: &Lag| ALL.iter().zip(&fit).map(|(&column, fit)| lag.follows[column] * fit).sum::<f64>();
@@ -107,8 +136,6 @@ fn usual(lags: &[Lag]) -> Vec<(usize, f64)> {
     let between = cells.values().map(|(sum, count)| (sum / count).powi(2)).sum::<f64>() / count;
     let of_noise = cells.values().map(|(_, count)| noise / count).sum::<f64>() / count;
     let own = (between - of_noise).max(0.0);
-    // No reading is off so far that repeats spread by more than a step or so: what does lags differently indeed.
-    let differs = if noise > MOST_NOISE_RAD.powi(2) { 1.0 - USUAL_NOISE_RAD.powi(2) / noise } else { 0.0 };
     let expected = |(lag, follows): (&Lag, &f64)| {
         let (sum, count) = cells[&lag.cell];
         let of_others = (sum - (lag.lag_rad - follows)) / (count - 1.0);
@@ -174,7 +201,7 @@ mod tests {
             let (mut alike, mut off, mut of_mean) = (0.0, 0.0, 0.0);
             for seed in 0..40 {
                 let (lags, truth, noise) = lags(own_rad, noise_rad, seed);
-                for (i, lag_rad) in usual(&lags) {
+                for (i, lag_rad) in usual(&lags, differs(&lags)) {
                     alike += (lag_rad - truth[i]) * noise[i];
                     off += (lag_rad - truth[i]).powi(2);
                     of_mean += noise_rad * noise_rad / 2.0;
@@ -198,6 +225,15 @@ mod tests {
                 truth[i] + off[i]
             );
         }
+    }
+
+    #[test]
+    fn a_reading_that_is_far_off_says_nothing_of_the_others() {
+        let (mut lags, ..) = lags(2e-3, 1e-3, 2);
+        lags[40].lag_rad += 0.1;
+        assert_eq!(differs(&lags), 0.0);
+        lags.truncate(12);
+        assert_eq!(differs(&lags), 0.0, "few rows tell nothing");
     }
 
     #[test]

@@ -33,7 +33,7 @@ pub fn levers(measurements: &Measurements, assumed: &Assumed, row: usize) -> Vec
 /// lag alike in all repeats, or no encoder is logged.
 pub fn lagged(measurements: &Measurements, assumed: &Assumed, row: usize) -> Vec<f64> {
     let row = &measurements.rows[row];
-    let Some(arm) = measurements.apparatus(row).arm.as_ref().filter(|_| row.usual_lag_rad.is_some()) else {
+    let Some(arm) = measurements.apparatus(row).arm.as_ref().filter(|_| row.has_own_lag) else {
         return vec![];
     };
     let early = Effect::sites(Kind::EarlyLog, Some(arm), None);
@@ -50,6 +50,10 @@ pub fn by_lag(rows: &[Repeat], spread: &Spread, fits: usize) -> Option<Structure
     let column = column(rows, spread, &|row, c| row.lagged[c])?;
     let off = spread.whitened();
     let rest = rest_of(&off, &[&column])?;
+    // What joints lag the other way by is no early log.
+    if off.dot(&column) <= 0.0 {
+        return None;
+    }
     let free = (spread.free() * spread.counted.len() as f64 - 1.0).max(1.0);
     let lost = off.norm_squared() - rest.norm_squared();
     let p_value = f_tail(lost / (rest.norm_squared() / free).max(1e-300), 1.0, free) * fits as f64;

@@ -32,7 +32,7 @@ pub(crate) use noise::{by_neighbors_of_eyes, structure_of};
 
 use crate::covariates::Covariates;
 use crate::error::GapError;
-use crate::finding::{Comparison, CoordinateComparison, FloorSource, KindComparison, Residual};
+use crate::finding::{Comparison, CoordinateComparison, FloorSource, KindComparison, OPEN_SIGMAS, Residual};
 use crate::floor::Floor;
 use crate::seen::nominal_place_m;
 
@@ -42,8 +42,6 @@ pub const FEWEST_ROWS: usize = 12;
 const SIGNIFICANT: f64 = 0.01;
 /// … and matters above this size, in standard deviations of one measurement.
 const MATTERS_SIGMAS: f64 = 0.3;
-/// A misfit so many times what an instrument leaves may be a gap, however it goes with what was logged.
-pub(crate) const OPEN_SIGMAS: f64 = 1.0;
 /// Measured and predicted places of one and the same arm go together at least so much (R²).
 const RELATED: f64 = 0.3;
 /// Repeats that scatter further than this are no noise of a robot, m.

@@ -15,6 +15,9 @@ const NEIGHBORS_IN_TIME: usize = 5;
 /// So many in a row are no mishap but a condition: something changed.
 const A_CONDITION: usize = 5;
 
+/// What a change does is the same in all rows that it changed to this share: one that turns a screen moves its sides otherwise.
+const NEAR: f64 = 0.7;
+
 /// Per row, whether it is an outlier.
 pub fn outliers(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> Vec<bool> {
     let mut out = vec![false; measurements.rows.len()];
@@ -122,11 +125,29 @@ fn keep_changes(measurements: &Measurements, what: What, residuals: &[Option<Vec
             };
             let changed = (0..own.len()).filter(|&first| out[own[first]]).find(has_changed);
             if let Some(first) = changed {
-                own[first..].iter().for_each(|&i| out[i] = false);
+                let after = &own[first..];
+                for i in near_their_median(after, residuals, out) {
+                    out[i] = false;
+                }
             }
             own.reverse();
         }
     }
+}
+
+/// Of those of these rows that are off, the ones that are off about as the middle one is: a mishap before the change, or after
+/// it, stays one.
+fn near_their_median(rows: &[usize], residuals: &[Option<Vec<f64>>], out: &[bool]) -> Vec<usize> {
+    let off: Vec<(usize, &Vec<f64>)> =
+        rows.iter().filter(|&&i| out[i]).filter_map(|&i| Some((i, residuals[i].as_ref()?))).collect();
+    let size = off.first().map_or(0, |(_, first)| first.len());
+    let middle: Vec<f64> =
+        (0..size).filter_map(|c| median(off.iter().map(|(_, residual)| residual[c]))).collect();
+    let length = middle.iter().map(|value| value * value).sum::<f64>().sqrt();
+    let distance = |residual: &[f64]| {
+        residual.iter().zip(&middle).map(|(value, middle)| (value - middle).powi(2)).sum::<f64>().sqrt()
+    };
+    off.iter().filter(|(_, residual)| distance(residual) <= NEAR * length).map(|(i, _)| *i).collect()
 }
 
 fn alike<'a>(residuals: impl Iterator<Item = &'a Option<Vec<f64>>>) -> bool {

@@ -13,7 +13,7 @@ use crate::search::Found;
 
 /// Simulated outcomes.
 const OUTCOMES: usize = 200;
-/// Names that are less probable than this are not in question.
+/// Names that are less probable than this may be left out of a set that is as probable without.
 const IN_QUESTION: f64 = 0.2;
 
 /// What an experiment would tell.
@@ -206,26 +206,44 @@ fn after(rivals: &[Rival], predicted: &[Predicted], seed: u64) -> (f64, f64) {
     (of_right / OUTCOMES as f64, of_first / OUTCOMES as f64)
 }
 
-/// Which rivals are the same to somebody who reads their names: each one's first that has the same names of those that are
-/// in question. Hundreds of sets have one more effect that hardly does anything.
+/// Which rivals are the same to somebody who reads their names: each one's first that has the same names, but for those that
+/// are hardly probable and that the set is about as probable without. Hundreds of sets have one more effect that hardly does
+/// anything.
 fn in_question(rivals: &[Rival]) -> Vec<usize> {
     let probable = |name: &String| -> f64 {
         rivals.iter().filter(|rival| rival.names.contains(name)).map(|rival| rival.probability).sum()
     };
-    let names: Vec<Vec<&String>> = rivals
+    let sorted = |rival: &Rival| {
+        let mut names = rival.names.clone();
+        names.sort_unstable();
+        names
+    };
+    let mut sets: Vec<(Vec<String>, f64)> = vec![];
+    for rival in rivals {
+        let names = sorted(rival);
+        match sets.iter_mut().find(|(known, _)| *known == names) {
+            Some((_, known)) => *known = known.max(rival.probability),
+            None => sets.push((names, rival.probability)),
+        }
+    }
+    let less = |names: &Vec<String>, own: f64| -> Option<(Vec<String>, f64)> {
+        (0..names.len()).filter(|&k| probable(&names[k]) < IN_QUESTION).find_map(|k| {
+            let mut without = names.clone();
+            without.remove(k);
+            sets.iter().find(|(known, other)| *known == without && 2.0 * other >= own).cloned()
+        })
+    };
+    let names: Vec<Vec<String>> = rivals
         .iter()
         .map(|rival| {
-            let own = rival.names.iter();
-            let mut probable: Vec<&String> = own.filter(|name| probable(name) >= IN_QUESTION).collect();
-            // One of many of which none is probable is that one all the same.
-            if probable.is_empty() {
-                probable = rival.names.iter().collect();
+            let (mut names, mut own) = (sorted(rival), rival.probability);
+            while let Some(smaller) = less(&names, own) {
+                (names, own) = smaller;
             }
-            probable.sort_unstable();
-            probable
+            names
         })
         .collect();
-    let first = |own: &Vec<&String>| names.iter().position(|other| other == own).unwrap_or(0);
+    let first = |own: &Vec<String>| names.iter().position(|other| other == own).unwrap_or(0);
     names.iter().map(first).collect()
 }
 
@@ -300,6 +318,13 @@ mod tests {
         assert_eq!(in_question(&rivals)[9..], [0, 10]);
         let one_of_six: Vec<Rival> = (0..6).map(|k| rival(&format!("joint {k}"), 1.0 / 6.0)).collect();
         assert_eq!(in_question(&one_of_six), [0, 1, 2, 3, 4, 5]);
+        let mut beside_sure = one_of_six;
+        beside_sure.iter_mut().for_each(|one| one.names.push("sag".to_owned()));
+        assert_eq!(
+            in_question(&beside_sure),
+            [0, 1, 2, 3, 4, 5],
+            "which joint it is stays open beside what is sure"
+        );
         let alike: Vec<Predicted> = (0..11).map(|k| at(if k < 10 { 0.0 } else { 20.0 })).collect();
         let (_, promised) = after(&rivals, &alike, 7);
         assert!(promised > 0.99, "{promised}");

@@ -33,8 +33,6 @@ pub use plan::plan_for;
 const SETTLED: f64 = 0.9;
 /// An experiment that brings less is none.
 const LEAST_GAIN: f64 = 0.02;
-/// Beside much that is a little off, names have to become as likely as this.
-const LIKELY: f64 = 0.5;
 /// Experiments this close to the best one are as good; the quickest for its worth is taken.
 const AS_GOOD: f64 = 0.05;
 /// Sizes known to this share are pinned down, one standard deviation.
@@ -52,7 +50,8 @@ pub(crate) fn advise(
     options: &Options,
     context: &dyn JobContext,
 ) -> Result<Option<NextExperiment>, GapError> {
-    if !options.advise || found.verdict == Verdict::NoGap {
+    // Where everything probably is a little off at once, no experiment of the menu makes few names likely.
+    if !options.advise || found.verdict == Verdict::NoGap || found.many.is_some() {
         return Ok(None);
     }
     let trials = menu::of(measurements, found);
@@ -74,7 +73,7 @@ pub(crate) fn advise(
         }
     }
     if settled {
-        return Ok(pin_down(scored, &rivals, now).and_then(|next| beside_many(next, found.many)));
+        return Ok(pin_down(scored, &rivals, now));
     }
     // Of what was watched a turn and a shift of the image are told apart by little else than more of the view.
     let watched = measurements.rows.iter().any(|row| row.stand.is_some());
@@ -83,17 +82,7 @@ pub(crate) fn advise(
         let why = score.pair.map_or(String::new(), |(a, b)| words::tells(&rivals[a], &rivals[b]));
         answer(trial, why, score.promised, &[])
     });
-    Ok(tell_apart(scored, &rivals, now).or(most).and_then(|next| beside_many(next, found.many)))
-}
-
-/// Where everything probably is a little off at once, an experiment that tells names apart leaves that as it is: one that
-/// makes no name likely is none.
-fn beside_many(mut next: NextExperiment, many: Option<f64>) -> Option<NextExperiment> {
-    let Some(many) = many else { return Some(next) };
-    let few = 1.0 - many;
-    next.expected_probability *= few;
-    next.others.iter_mut().for_each(|(_, expected, _)| *expected *= few);
-    (next.expected_probability >= LIKELY).then_some(next)
+    Ok(tell_apart(scored, &rivals, now).or(most))
 }
 
 /// Fills [`NamedEffect::split_by`] of every effect that may have another name.
