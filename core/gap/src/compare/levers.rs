@@ -47,7 +47,8 @@ pub fn by_lag(rows: &[Repeat], spread: &Spread, fits: usize) -> Option<Structure
     if rows.iter().any(|row| row.lagged.is_empty()) {
         return None;
     }
-    let column = column(rows, spread, &|row, c| row.lagged[c])?;
+    // That it differs is known; however large what is the same in all repeats.
+    let column = column(rows, spread, 0.0, &|row, c| row.lagged[c])?;
     let off = spread.whitened();
     let rest = rest_of(&off, &[&column])?;
     // What joints lag the other way by is no early log.
@@ -103,7 +104,7 @@ fn columns(rows: &[Repeat], joint: usize, spread: &Spread) -> Option<Vec<DVector
     let by_way = |turned_rad: f64| (turned_rad / REMEMBERED_RAD).tanh();
     let laws: [&dyn Fn(f64) -> f64; 2] = [&by_side, &by_way];
     let of = |law: &dyn Fn(f64) -> f64| {
-        column(rows, spread, &|row, c| {
+        column(rows, spread, LEAST_WITHIN, &|row, c| {
             let turned_rad = row.turned_rad.get(joint).copied().unwrap_or(0.0);
             row.levers.get(joint).map_or(0.0, |lever| lever[c]) * law(turned_rad)
         })
@@ -112,7 +113,12 @@ fn columns(rows: &[Repeat], joint: usize, spread: &Spread) -> Option<Vec<DVector
     (!all.is_empty()).then_some(all)
 }
 
-fn column(rows: &[Repeat], spread: &Spread, value: &dyn Fn(&Repeat, usize) -> f64) -> Option<DVector<f64>> {
+fn column(
+    rows: &[Repeat],
+    spread: &Spread,
+    least: f64,
+    value: &dyn Fn(&Repeat, usize) -> f64,
+) -> Option<DVector<f64>> {
     let counted = &spread.counted;
     let mut means = std::collections::BTreeMap::<usize, (Vec<f64>, f64)>::new();
     for row in rows {
@@ -132,7 +138,7 @@ fn column(rows: &[Repeat], spread: &Spread, value: &dyn Fn(&Repeat, usize) -> f6
         }
     }
     let within = column.norm_squared();
-    (within > LEAST_WITHIN * whole && within > 0.0).then(|| column / within.sqrt())
+    (within > least * whole && within > 0.0).then(|| column / within.sqrt())
 }
 
 /// What these columns leave.
@@ -188,6 +194,28 @@ mod tests {
 
     fn found(rows: &[Repeat]) -> Option<Structure> {
         structure(rows, 100.0, "time", &["the elbow".to_owned()])
+    }
+
+    #[test]
+    fn what_joints_lag_by_is_found_beside_much_that_is_the_same_in_all_repeats() {
+        let lagging = |seed: u64, share: f64| {
+            let mut all = rows(seed, |_| 0.0);
+            for row in &mut all {
+                // It stops as far short of its goal as its last way was long: as good as chance.
+                let stops_short = row.turned_rad[0];
+                let lever = &row.levers[0];
+                row.lagged = lever.iter().map(|lever| lever * (20.0 + stops_short)).collect();
+                row.off.iter_mut().zip(lever).for_each(|(off, lever)| *off += share * lever * stops_short);
+                row.turned_rad = vec![0.0];
+            }
+            found(&all)
+        };
+        for seed in 0..10 {
+            let structure = lagging(seed, 1.5).expect("nearly two standard deviations");
+            assert!(structure.on.starts_with("how far joints stop short"), "{}", structure.on);
+            assert!(lagging(20 + seed, -1.5).is_none(), "no early log goes the other way");
+            assert!(lagging(40 + seed, 0.0).is_none());
+        }
     }
 
     #[test]
