@@ -458,7 +458,7 @@ fn manifests_that_cannot_be_used_say_where() {
     with(&|m| m.replace("[\"a\", \"b\"]", "[]"), &["chain.joints", "at least one"]);
     with(&|m| m.replace("[\"a\", \"b\"]", "[\"a\", \"a\"]"), &["chain.joints[1]", "not in the list yet"]);
     with(&|m| m.replace("tip = ", "tip: "), &["line 13", "TOML"]);
-    refused(&[("touches.csv", TOUCHES)], &["session.toml", "cannot be read"]);
+    refused(&[("touches.csv", TOUCHES)], &["session.toml", "is no session"]);
     refused(&[("session.toml", ""), ("touches.csv", TOUCHES)], &["session.toml", "is empty"]);
 }
 
