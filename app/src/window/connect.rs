@@ -7,7 +7,7 @@ use plumbline_widgets::buttons::choice;
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, Role, space};
 
-use super::sheet::{Asked, buttons, title};
+use super::sheet::{Asked, buttons, done_button, title};
 use crate::operator::default_scenario;
 
 /// What has been chosen so far.
@@ -27,6 +27,9 @@ pub(super) fn show(ui: &mut Ui, view: &View, chosen: &mut ConnectChoice) -> Aske
         return Asked::CommandKeepOpen(RobotCommand::ListPorts.into());
     }
     present(ui, &view.robot);
+    if is_connected_to(view, chosen) {
+        return if done_button(ui) { Asked::Closed } else { offer_disconnect(ui, &view.robot) };
+    }
     let (verb, asked) = match (&view.robot.connection, command) {
         (Connection::Connecting { .. }, _) => ("Connecting", None),
         (_, command) if chosen.to_port => ("Connect", command),
@@ -36,6 +39,16 @@ pub(super) fn show(ui: &mut Ui, view: &View, chosen: &mut ConnectChoice) -> Aske
         Some(false) => Asked::Closed,
         Some(true) => asked.map_or(Asked::Open, |command| Asked::CommandKeepOpen(command.into())),
         None => offer_disconnect(ui, &view.robot),
+    }
+}
+
+/// Whether what is chosen is what the program is connected to: then there is nothing left to do here.
+fn is_connected_to(view: &View, chosen: &ConnectChoice) -> bool {
+    let Connection::Connected { to, twin } = &view.robot.connection else { return false };
+    match (chosen.to_port, twin) {
+        (false, true) => chosen.scenario.as_ref().is_none_or(|scenario| *scenario == view.twin.scenario),
+        (true, false) => chosen.port.as_ref().is_none_or(|port| port == to),
+        _ => false,
     }
 }
 

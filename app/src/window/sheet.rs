@@ -84,6 +84,14 @@ pub(super) fn buttons(ui: &mut Ui, verb: &str, enabled: bool) -> Option<bool> {
     row_of(ui, accent, enabled, cancel)
 }
 
+/// The one button of a sheet on which nothing is left to do.
+pub(super) fn done_button(ui: &mut Ui) -> bool {
+    ui.add_space(space::S);
+    let row = egui::vec2(ui.available_width(), BUTTON_ROW_HEIGHT);
+    let right = egui::Layout::right_to_left(egui::Align::Center);
+    ui.allocate_ui_with_layout(row, right, |ui| ui.add(accent_button(ui, "Done")).clicked()).inner
+}
+
 /// As [`buttons`], where what was asked for may hurt or cannot be taken back: calling it off is what stands out.
 pub(super) fn buttons_with_care(ui: &mut Ui, verb: &str) -> Option<bool> {
     let color = Role::Warning.color(theme::tokens(ui));

@@ -109,6 +109,7 @@ fn good_before(minutes: i64, eyes_on_min: Option<f64>, moved_m: Option<[f64; 3]>
     let HealthState::Judged(health) = judged(0.004, None) else { unreachable!("just made") };
     let at = jiff::Timestamp::now() - jiff::SignedDuration::from_mins(minutes);
     with_health(HealthView {
+        cold_for_min: None,
         state: HealthState::Judged(health.clone()),
         judged: Some(health),
         when: Some(JudgedWhen { at, eyes_on_min, moved_m, colder: None, warmed_since: false }),
@@ -150,6 +151,7 @@ fn cold_eyes_are_told_to_wait_instead_of_being_calibrated_again() {
     let HealthState::Judged(health) = judged(0.04, None) else { unreachable!("just made") };
     let state = HealthState::Judged(health.clone());
     let health = HealthView {
+        cold_for_min: None,
         state,
         judged: Some(health),
         when: None,
@@ -242,6 +244,7 @@ fn a_proposal_that_was_judged_before_places_moved_is_to_be_judged_again() {
         warmed_since: false,
     });
     let view = with_health(HealthView {
+        cold_for_min: None,
         state,
         judged: Some(health),
         when,
@@ -264,6 +267,7 @@ fn what_was_judged_with_colder_eyes_does_not_stand_once_they_are_warm() {
         let at = jiff::Timestamp::now();
         let when = JudgedWhen { at, eyes_on_min: Some(3.0), moved_m: None, colder: Some(true), warmed_since };
         let view = with_health(HealthView {
+            cold_for_min: None,
             state: HealthState::Judged(health.clone()),
             judged: Some(health.clone()),
             when: Some(when),

@@ -185,6 +185,7 @@ pub fn solved_mount() -> MountSummary {
 /// Views taken, with a proposal.
 pub fn mount() -> MountView {
     let views = (0..13u32).map(|i| HeadViewSummary {
+        is_colder: false,
         name: format!("view-{:02}", i + 1),
         pan_rad: 0.35 * (f64::from(i) * 0.9).sin(),
         tilt_rad: -0.45 - 0.12 * (f64::from(i) * 0.7).cos(),

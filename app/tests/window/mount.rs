@@ -72,6 +72,31 @@ fn one_button_leads_through_the_work() {
 }
 
 #[test]
+fn a_proposal_of_other_views_is_solved_again_and_not_accepted() {
+    let why = "The views are others than those that the proposed mount was solved from. Solve it again.";
+    let stale = MountView { proposal_stale: Some(why.to_owned()), ..mount() };
+    let fake = Fake::over(ready(stale));
+    let mut window = fake.window(on_mount());
+    assert!(says(&window, why) && !shows(&window, "Accept the mount"));
+    click(&mut window, "Solve 13 views again");
+    assert_eq!(sent(&fake), [MountCommand::Solve]);
+}
+
+#[test]
+fn views_of_colder_eyes_go_first() {
+    let mut mixed = mount();
+    let mut views = mixed.views.to_vec();
+    views.iter_mut().take(4).for_each(|view| view.is_colder = true);
+    mixed.views = views.into();
+    let fake = Fake::over(ready(mixed));
+    let mut window = fake.window(on_mount());
+    assert!(says(&window, "4 of 13 views were taken while the eyes were colder."));
+    assert!(shows(&window, "colder"));
+    click(&mut window, "Delete 4 views of colder eyes");
+    assert_eq!(sent(&fake), [MountCommand::DeleteColder]);
+}
+
+#[test]
 fn what_was_accepted_is_behind_and_the_button_leads_to_the_next_step() {
     // Eyes without a mount: on every screen where one looks at them, the mount comes next.
     for screen in [Screen::Live, Screen::Judge, Screen::Accept] {

@@ -289,6 +289,21 @@ fn connecting_says_that_nothing_moves_and_keeps_the_sheet_open() {
     assert!(says(&window, "latency timer"));
 }
 
+#[test]
+fn a_sheet_on_which_nothing_is_left_to_do_ends_with_done() {
+    let fake = Fake::over(with_robot(RobotView { rig: connected().rig, ..RobotView::default() }));
+    let mut window = fake.window(on_robot());
+    click(&mut window, "Connect the robot…");
+    assert!(shows(&window, "Connect the twin") && !shows(&window, "Done"));
+    fake.show(everything());
+    window.run_steps(3);
+    assert!(says(&window, "Connected to twin") && !shows(&window, "Connect the twin"));
+    robot_commands(&fake);
+    click(&mut window, "Done");
+    assert!(!says(&window, "Nothing moves, and torque stays as it is."));
+    assert_eq!(robot_commands(&fake), []);
+}
+
 /// One joint that gives way is as much of a danger, and is not hidden behind all that hold.
 #[test]
 fn a_single_joint_that_goes_limp_is_asked_about_and_said() {

@@ -76,6 +76,8 @@ pub enum MountAction {
     Accept,
     /// Forgets the proposal.
     Discard,
+    /// Removes the views of eyes that were colder than in the others.
+    DeleteColder,
     /// Removes all views.
     DeleteAll,
     /// Goes back to the nominal mount.
@@ -310,13 +312,14 @@ pub fn default_scenario(view: &View) -> String {
 
 impl MountAction {
     /// All of them, in the palette's order.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Plan,
         Self::Tour,
         Self::Capture,
         Self::Solve,
         Self::Accept,
         Self::Discard,
+        Self::DeleteColder,
         Self::DeleteAll,
         Self::UseNominal,
     ];
@@ -330,6 +333,7 @@ impl MountAction {
             Self::Solve => "Solve the mount of the eyes",
             Self::Accept => "Accept the mount",
             Self::Discard => "Discard the proposed mount",
+            Self::DeleteColder => "Delete the views of colder eyes",
             Self::DeleteAll => "Delete all views",
             Self::UseNominal => "Use the nominal mount",
         }
@@ -349,6 +353,13 @@ impl MountAction {
             Self::Tour => when(!mount.planned.is_empty(), "no head poses are planned"),
             Self::Solve if busy => Some("work on the mount is under way".into()),
             Self::Solve | Self::DeleteAll => when(!mount.views.is_empty(), "there is no view yet"),
+            Self::DeleteColder => {
+                let is_one_colder = mount.views.iter().any(|view| view.is_colder);
+                when(is_one_colder, "the eyes were about as warm in all views")
+            }
+            Self::Accept if mount.proposal_stale.is_some() => {
+                Some("views were taken or deleted since it was solved: solve again".into())
+            }
             Self::Accept | Self::Discard => when(mount.proposal.is_some(), "nothing is proposed"),
             Self::UseNominal => when(mount.in_use.is_some(), "the nominal mount is in use"),
         }
@@ -363,6 +374,7 @@ impl MountAction {
             Self::Solve => MountCommand::Solve,
             Self::Accept => MountCommand::Accept,
             Self::Discard => MountCommand::Discard,
+            Self::DeleteColder => MountCommand::DeleteColder,
             Self::DeleteAll => MountCommand::DeleteAll,
             Self::UseNominal => MountCommand::UseNominal,
         }

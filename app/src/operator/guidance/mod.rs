@@ -27,6 +27,7 @@ use plumbline_engine::view::{CaptureHint, Connection, EyesView, GhostBoard, Prop
 use plumbline_engine::{SourceSpec, View};
 use plumbline_widgets::format;
 
+use super::words::eyes::still_cold;
 use super::words::more_doubts;
 use super::words::robot::is_limp;
 use super::{Action, CommissionAction, RobotAction, Screen, faults};
@@ -220,7 +221,8 @@ fn collect(view: &View) -> Guidance {
         let (columns, rows) = eyes.board.squares();
         let square_mm = eyes.board.square_m * 1000.0;
         return say(format!(
-            "The board is {columns}×{rows} squares of {square_mm} mm: check that, then collect."
+            "The board is {columns}×{rows} squares of {square_mm} mm: check that, then collect.{}",
+            still_cold(eyes)
         ))
         .then(collect_label(view), collect_action(view));
     }
@@ -249,6 +251,13 @@ fn collect(view: &View) -> Guidance {
             say(format!("{said} Collect more only to solve again."))
                 .then("Go to Live", Action::Go(Screen::Live))
         });
+    }
+    // A few pairs may have been taken one by one; nobody can hold the twin's board to the outline.
+    if count < ENOUGH_PAIRS
+        && view.source.replay.is_none()
+        && let Some(guidance) = robot::board_of_the_twin(view)
+    {
+        return guidance;
     }
     if enough || view.source.replay.is_some() || view.source.status == SourceStatus::None {
         let said = if count < ENOUGH_PAIRS {

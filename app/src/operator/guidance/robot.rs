@@ -1,7 +1,8 @@
 //! What to do next with the robot and with the mount of its eyes.
 
 use plumbline_engine::view::{
-    CaptureHint, Connection, JointView, MotionState, Preview, RobotView, SourceStatus, StepState, TourWaits,
+    CaptureHint, Connection, JointView, MotionState, MountView, Preview, RobotView, SourceStatus, StepState,
+    TourWaits,
 };
 use plumbline_engine::{SourceSpec, View};
 use plumbline_model::robot::JointIndex;
@@ -10,6 +11,7 @@ use plumbline_widgets::format;
 use super::onward;
 use super::sentence::{Guidance, say};
 use crate::operator::actions::would_drop;
+use crate::operator::words::eyes::still_cold;
 use crate::operator::words::mount;
 use crate::operator::words::robot::{BY_STOP, is_close, is_limp, move_sentence, moved_name, silent_together};
 use crate::operator::{Action, MountAction, RobotAction, Screen};
@@ -257,6 +259,21 @@ pub(super) fn mount(view: &View) -> Guidance {
         let guidance = stale.map_or_else(|| say(first), |why| say(why.clone()).warn());
         return guidance.then("Calibrate the eyes", Action::Go(Screen::Collect));
     }
+    let colder = mount.views.iter().filter(|view| view.is_colder).count();
+    if colder > 0 {
+        let (views, were) =
+            (format::count(mount.views.len(), "view"), if colder == 1 { "was" } else { "were" });
+        let said = format!(
+            "{colder} of {views} {were} taken while the eyes were colder. They turn while they warm up: these do not go with the others."
+        );
+        let colder = format::count(colder, "view");
+        let delete = Action::Mount(MountAction::DeleteColder);
+        return say(said).warn().then(format!("Delete {colder} of colder eyes"), delete);
+    }
+    if let Some(why) = &mount.proposal_stale {
+        let views = format::count(mount.views.len(), "view");
+        return say(why.clone()).then(format!("Solve {views} again"), Action::Mount(MountAction::Solve));
+    }
     if let Some(proposal) = &mount.proposal {
         let (good, verdict) = mount::verdict(proposal);
         let said = say(format!("Solved. {verdict}"));
@@ -265,10 +282,11 @@ pub(super) fn mount(view: &View) -> Guidance {
     }
     if !mount.planned.is_empty() {
         let poses = format::count(mount.planned.len(), "pose");
-        return say(next_or(view, &format!("The head turns to {poses} and looks at each; the arms stay.")))
+        let said = next_or(view, &format!("The head turns to {poses} and looks at each; the arms stay."));
+        return say(format!("{said}{}", still_cold(&view.eyes)))
             .then(format!("Turn the head to {poses}"), Action::Mount(MountAction::Tour));
     }
-    if !mount.views.is_empty() && !mount.is_solved {
+    if mount.views.len() >= MountView::LEAST_VIEWS && !mount.is_solved {
         let views = format::count(mount.views.len(), "view");
         return say(next_or(view, &format!("{views} taken. Next: solve.")))
             .then(format!("Solve {views}"), Action::Mount(MountAction::Solve));
@@ -286,7 +304,8 @@ pub(super) fn mount(view: &View) -> Guidance {
             .then("Lay the board on the table", Action::Robot(RobotAction::LayBoard));
     }
     let lay = "Lay the board where both eyes see it and leave it there. Then plan: nothing moves yet.";
-    told(next_or(view, lay)).then("Plan head poses", Action::Mount(MountAction::Plan))
+    told(format!("{}{}", next_or(view, lay), still_cold(&view.eyes)))
+        .then("Plan head poses", Action::Mount(MountAction::Plan))
 }
 
 /// The engine's own sentence, where it has one.
@@ -354,7 +373,9 @@ fn waits_for(waits: TourWaits, view: &View) -> String {
 pub(super) fn board_of_the_twin(view: &View) -> Option<Guidance> {
     let first = view.twin.running && view.twin.board.is_none() && view.twin.board_places > 0;
     first.then(|| {
-        say("An unseen hand shows the twin the board at all places; pairs are captured by themselves.")
+        let shows =
+            "An unseen hand shows the twin the board at all places; pairs are captured by themselves.";
+        say(format!("{shows}{}", still_cold(&view.eyes)))
             .then("Show the board at all places", Action::Robot(RobotAction::TourBoard))
     })
 }

@@ -43,6 +43,17 @@ pub fn all_cold(eyes: &EyesView) -> Option<String> {
     })
 }
 
+/// That the eyes still warm up, behind what is to be done with them: a sentence that begins with a space, or nothing.
+pub fn still_cold(eyes: &EyesView) -> String {
+    let wait_min = eyes.health.cold_for_min.map(|wait_min| wait_min.ceil() as usize);
+    wait_min.map_or_else(String::new, |wait_min| {
+        format!(
+            " The eyes are still cold and turn while they warm up: what is taken now fits until then, in {}.",
+            counted(wait_min, "minute")
+        )
+    })
+}
+
 fn is_cold(minutes_on: f64) -> bool {
     minutes_on < WARM_AFTER_MINUTES
 }

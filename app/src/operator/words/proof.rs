@@ -96,7 +96,8 @@ impl Proof {
         let touches = format::count(self.described.count + self.with.count, "touch");
         let [described, with] = [self.described, self.with].map(|figures| format::mm(figures.mean_m));
         format!(
-            "{touches}: {described} beside the target as the robot is described, {with} with the effects, on average."
+            "{touches}: {described} beside the target as the robot is described, {with} with the effects, on average: \
+             of the fingertip on the screen, not of the palm."
         )
     }
 }

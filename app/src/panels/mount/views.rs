@@ -85,7 +85,12 @@ fn row(ui: &mut Ui, cx: &mut PanelContext<'_>, seen: &HeadViewSummary) {
                     format::count(seen.corners.0, "corner"),
                     seen.corners.1
                 ));
-                if ui.available_width() > FIT_WIDTH {
+                if seen.is_colder {
+                    let text = egui::RichText::new("colder").color(Role::Warning.color(theme::tokens(ui)));
+                    ui.add(egui::Label::new(text).truncate()).on_hover_text(
+                        "Taken while the eyes were colder than in other views: it does not go with them",
+                    );
+                } else if ui.available_width() > FIT_WIDTH {
                     fit(ui, left_out.map(|(_, why)| why.as_str()), seen.rms_px);
                 }
             });

@@ -8,7 +8,7 @@ use super::health_judged::{Ask, Of};
 use super::view::{HealthState, HealthView, ProposalHealth};
 use super::workflow::{EyesAround, EyesWorkflow};
 use crate::ground::Time;
-use crate::ground::warming::{Warmth, still_gets_as_warm};
+use crate::ground::warming::{Warmth, cold_for_min, still_gets_as_warm};
 
 impl EyesWorkflow {
     /// What the window shows of it: of the calibration in use and of the proposal as they are now, and of nothing else.
@@ -29,10 +29,12 @@ impl EyesWorkflow {
             (None, None) => ended.map_or(HealthState::NotAsked, |(_, state)| state.clone()),
         };
         let colder_wait_min = self.to_be_warm_min(around, instant);
-        let when = judged.map(|judged| judged.when(around, self.eyes_on_min(around, instant)));
+        let on_min = self.eyes_on_min(around, instant);
+        let cold_for_min = on_min.and_then(cold_for_min);
+        let when = judged.map(|judged| judged.when(around, on_min));
         let does_not_hold = self.does_not_hold().map(str::to_owned);
         let judged = judged.map(|judged| judged.health.clone());
-        HealthView { state, judged, when, colder_wait_min, does_not_hold }
+        HealthView { state, judged, when, colder_wait_min, cold_for_min, does_not_hold }
     }
 
     /// In how many minutes the eyes are as warm as when the calibration in use was made; `None`: they are, or nobody knows.

@@ -25,6 +25,8 @@ pub struct HealthView {
     /// The eyes are colder than when the calibration in use was made, and as warm after so many minutes: what it is off by
     /// until then says nothing of it. `None`: they are not, or nobody knows.
     pub colder_wait_min: Option<f64>,
+    /// The eyes still turn while they warm up, and are warm after so many minutes. `None`: they are, or nobody knows.
+    pub cold_for_min: Option<f64>,
     /// Why the calibration in use does not hold any more; `None`: nobody has seen that.
     pub does_not_hold: Option<String>,
 }

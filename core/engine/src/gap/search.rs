@@ -18,6 +18,19 @@ pub enum SearchError {
     /// The robot of a session is not known, or its file cannot be used.
     #[error(transparent)]
     Rig(#[from] RigError),
+    /// A session is of another robot than the one that is looked at.
+    #[error(
+        "{session} is of the robot {of}, and {open} is open here: take it out of the choice. Another robot's \
+         sessions are searched by themselves, with ./plumbline gap"
+    )]
+    OtherRobot {
+        /// Its title.
+        session: String,
+        /// Whose it is.
+        of: String,
+        /// The robot that is looked at.
+        open: String,
+    },
     /// The sessions cannot be looked at together.
     #[error(transparent)]
     Measurements(#[from] MeasurementsError),
@@ -35,8 +48,11 @@ pub fn measured(folders: &[PathBuf], rig: &Rig) -> Result<Measurements, SearchEr
         .iter()
         .map(|folder| {
             let session = Session::read(folder)?;
-            same_rig(rig, &rig_of(&session, folder)?, &title_of(folder))?;
-            Ok((title_of(folder), session))
+            let (title, of) = (title_of(folder), rig_of(&session, folder)?);
+            if of.name != rig.name {
+                return Err(SearchError::OtherRobot { session: title, of: of.name, open: rig.name.clone() });
+            }
+            Ok((title, session))
         })
         .collect::<Result<_, SearchError>>()?;
     Ok(Measurements::of_sessions(&sessions, rig)?)

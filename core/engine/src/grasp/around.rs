@@ -39,6 +39,8 @@ pub struct GraspAround {
     pub detector: (DetectorChoice, Provider),
     /// Where the images come from.
     pub source: Arc<SourceView>,
+    /// How old the newest pair of images is, s; `None`: none came yet.
+    pub pair_age_s: Option<f64>,
     /// Whether these are the eyes of the robot whose arm is connected.
     pub own_eyes: bool,
     /// What was detected last.
@@ -80,6 +82,7 @@ impl GraspAround {
             corrections: Corrections::default(),
             detector: (DetectorChoice::Shipped, Provider::default()),
             source: Arc::default(),
+            pair_age_s: None,
             own_eyes: true,
             found: None,
             in_experiment: false,

@@ -195,6 +195,29 @@ fn load(around: &GraspAround, arm: &str) -> Gate {
     }
 }
 
+/// A pair of images is old from this age on, s: eyes deliver thirty a second.
+const OLD_PAIR_S: f64 = 1.5;
+/// What is this old shows nothing of where things are now, s.
+const STALE_PAIR_S: f64 = 5.0;
+
+/// Eyes that run, by how old their newest pair is.
+fn fresh(pair_age_s: Option<f64>) -> Gate {
+    match pair_age_s {
+        Some(age_s) if age_s >= STALE_PAIR_S => closed(
+            Need::Eyes,
+            format!(
+                "The newest picture is {age_s:.0} s old: wait for the eyes, or open them again at the top left."
+            ),
+        ),
+        Some(age_s) if age_s >= OLD_PAIR_S => doubtful(
+            Need::Eyes,
+            format!("The newest picture is {age_s:.1} s old: this computer is busy, and pictures come late."),
+        ),
+        Some(_) => open(Need::Eyes, "Both eyes deliver."),
+        None => closed(Need::Eyes, "No picture came yet: wait a moment."),
+    }
+}
+
 fn eyes(around: &GraspAround) -> Gate {
     match &around.source.status {
         SourceStatus::None => closed(Need::Eyes, "No eyes are open: open them at the top left."),
@@ -202,7 +225,7 @@ fn eyes(around: &GraspAround) -> Gate {
             Need::Eyes,
             "The images are not those of this robot's eyes: open its eyes at the top left.",
         ),
-        SourceStatus::Running => open(Need::Eyes, "Both eyes deliver."),
+        SourceStatus::Running => fresh(around.pair_age_s),
         SourceStatus::Opening => closed(Need::Eyes, "The eyes are being opened: wait a moment."),
         SourceStatus::Lost { reason, .. } => closed(Need::Eyes, reason.clone()),
         SourceStatus::Paused => closed(Need::Eyes, "The eyes are held still: let them go on."),
@@ -278,6 +301,15 @@ mod tests {
             ..RobotView::default()
         };
         GraspAround { robot: Arc::new(robot), ..GraspAround::bare(&rig) }
+    }
+
+    #[test]
+    fn eyes_of_which_no_new_picture_comes_do_not_deliver() {
+        assert_eq!(fresh(Some(0.2)).state, GateState::Open);
+        assert_eq!(fresh(Some(2.0)).state, GateState::Doubtful);
+        let stale = fresh(Some(17.0));
+        assert!(stale.state == GateState::Shut && stale.text.contains("17 s old"), "{}", stale.text);
+        assert_eq!(fresh(None).state, GateState::Shut);
     }
 
     #[test]

@@ -52,9 +52,14 @@ impl StageClock {
         self.skipped = skipped;
     }
 
+    /// When the newest result came.
+    pub fn newest_at(&self) -> Option<Instant> {
+        self.results.back().copied()
+    }
+
     /// The figures at this moment.
     pub fn figures(&mut self, now: Instant) -> StageStatistics {
-        let newest_at = self.results.back().copied();
+        let newest_at = self.newest_at();
         self.forget_before(now);
         StageStatistics {
             per_second: self.per_second(),

@@ -49,6 +49,12 @@ pub fn is_cold(on_min: f64) -> bool {
     1.0 - share(on_min) > SHARE
 }
 
+/// In how many minutes eyes that have been on for so many are about as warm as they get; `None`: they are.
+pub fn cold_for_min(on_min: f64) -> Option<f64> {
+    let enough_min = -WARMING_S / 60.0 * SHARE.ln();
+    is_cold(on_min).then(|| (enough_min - on_min).ceil().max(1.0))
+}
+
 /// Share of the way from cold to warm.
 fn share(on_min: f64) -> f64 {
     warm_share(60.0 * on_min)
@@ -77,6 +83,11 @@ mod tests {
     fn eyes_are_cold_until_they_are_nearly_as_warm_as_they_get() {
         assert!(is_cold(0.0) && is_cold(3.0) && is_cold(12.0));
         assert!(!is_cold(13.0) && !is_cold(600.0));
+        for on_min in [0.0, 3.0, 12.5] {
+            let wait_min = cold_for_min(on_min).expect("they are cold");
+            assert!(!is_cold(on_min + wait_min) && is_cold(on_min + wait_min - 1.5), "{on_min}: {wait_min}");
+        }
+        assert_eq!(cold_for_min(13.0), None);
     }
 
     #[test]

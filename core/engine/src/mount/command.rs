@@ -17,6 +17,8 @@ pub enum MountCommand {
         /// Its name.
         view: String,
     },
+    /// Removes the views that were taken while the eyes were colder than in the others.
+    DeleteColder,
     /// Removes all views.
     DeleteAll,
     /// Brings back the views that were deleted last, as long as no mount was accepted since.

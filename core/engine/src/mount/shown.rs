@@ -7,7 +7,7 @@ use plumbline_vision::mount::{HeadView, MountCalibration, MountChange};
 
 use super::tour::Tour;
 use super::view::{HeadViewSummary, MountSummary, MountTour, MountView};
-use super::workflow::{LEAST_VIEWS, MountAround, MountWorkflow};
+use super::workflow::{MountAround, MountWorkflow};
 use crate::ground::step::StepState;
 
 impl MountWorkflow {
@@ -17,11 +17,12 @@ impl MountWorkflow {
             step: self.step_state(around),
             can_undo: !self.deleted.is_empty(),
             views: self.views.iter().map(|view| self.summary(view, around)).collect(),
-            is_solved: self.is_solved(),
+            is_solved: self.in_use.as_deref().is_some_and(|mount| self.is_of_these_views(mount)),
             planned: self.still_to_be_seen().into(),
             tour: self.tour.as_ref().map(|tour| self.tour_view(tour)),
             next: self.next(around),
             proposal: self.proposal.as_deref().map(summary),
+            proposal_stale: self.proposal_stale().map(str::to_owned),
             in_use: self.in_use.as_deref().map(summary),
         }
     }
@@ -37,9 +38,19 @@ impl MountWorkflow {
         self.tour.as_ref().map_or(self.seen, by_tour)
     }
 
-    /// Whether the mount in use was solved from just the views that are here: then there is nothing to solve.
-    fn is_solved(&self) -> bool {
-        let Some(mount) = self.in_use.as_deref().filter(|_| !self.views.is_empty()) else { return false };
+    /// Why the proposal is none of the views that are here; `None`: it is, or nothing is proposed.
+    pub(super) fn proposal_stale(&self) -> Option<&'static str> {
+        let proposal = self.proposal.as_deref()?;
+        (!self.is_of_these_views(proposal)).then_some(
+            "The views are others than those that the proposed mount was solved from. Solve it again.",
+        )
+    }
+
+    /// Whether a mount was solved from just the views that are here: then there is nothing to solve.
+    fn is_of_these_views(&self, mount: &MountCalibration) -> bool {
+        if self.views.is_empty() {
+            return false;
+        }
         let used = mount.per_view.iter().map(|fit| &fit.name);
         let used: BTreeSet<&String> = used.chain(mount.rejected.iter().map(|view| &view.name)).collect();
         self.views.len() == used.len() && self.views.iter().all(|view| used.contains(&view.name))
@@ -79,6 +90,9 @@ impl MountWorkflow {
         if self.solving.is_some() {
             return "The mount is being solved.".to_owned();
         }
+        if let Some(why) = self.proposal_stale() {
+            return why.to_owned();
+        }
         if self.proposal.is_some() {
             return "Compare the solution with the mount in use, then accept or discard it.".to_owned();
         }
@@ -89,11 +103,11 @@ impl MountWorkflow {
             return "Connect to the robot or the twin: the head's angles have to be known.".to_owned();
         }
         let left = self.still_to_be_seen().len();
-        if left == 0 && self.is_solved() {
+        if left == 0 && self.in_use.as_deref().is_some_and(|mount| self.is_of_these_views(mount)) {
             return "The mount of the eyes is in use. Plan head poses again when the head was taken apart."
                 .to_owned();
         }
-        if self.views.len() >= LEAST_VIEWS && left == 0 {
+        if self.views.len() >= MountView::LEAST_VIEWS && left == 0 {
             return format!("{} taken. Solve the mount.", counted(self.views.len(), "view"));
         }
         if left == 0 {
@@ -119,6 +133,7 @@ impl MountWorkflow {
             tilt_rad: view.posture[around.rig.eyes.tilt],
             corners: (count(&view.left), count(&view.right)),
             rms_px,
+            is_colder: self.is_colder(&view.name),
         }
     }
 }

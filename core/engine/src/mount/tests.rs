@@ -223,6 +223,25 @@ fn views_keep_for_how_long_the_eyes_had_been_on() {
 }
 
 #[test]
+fn views_of_colder_eyes_are_told_from_the_others_and_go_at_once() {
+    let mut bench = Bench::new();
+    bench.tour();
+    for on_s in [None, Some(120.0), Some(900.0)] {
+        bench.around.eyes_on_s = on_s;
+        bench.arrives();
+    }
+    let colder = |bench: &mut Bench| {
+        bench.view().views.iter().map(|view| (view.name.clone(), view.is_colder)).collect::<Vec<_>>()
+    };
+    let told = colder(&mut bench);
+    assert_eq!(told.iter().map(|(_, is_colder)| *is_colder).collect::<Vec<_>>(), [false, true, false]);
+    bench.with(|room, around, context| room.apply(MountCommand::DeleteColder, around, context));
+    assert_eq!(colder(&mut bench), [told[0].clone(), told[2].clone()], "of which nobody knows stays");
+    bench.with(|room, around, context| room.apply(MountCommand::Undo, around, context));
+    assert_eq!(colder(&mut bench), told);
+}
+
+#[test]
 fn poses_that_are_planned_during_a_tour_take_the_place_of_its_rest() {
     const NEW: [(f64, f64); 2] = [(0.1, -0.5), (-0.1, -0.5)];
     let mut bench = Bench::new();

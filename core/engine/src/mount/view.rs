@@ -26,8 +26,15 @@ pub struct MountView {
     pub next: String,
     /// A solution that waits to be accepted.
     pub proposal: Option<MountSummary>,
+    /// Why it is of other views than these; `None`: it is of these.
+    pub proposal_stale: Option<String>,
     /// The one in use; `None`: nominal.
     pub in_use: Option<MountSummary>,
+}
+
+impl MountView {
+    /// At least so many views are asked for before the mount is solved.
+    pub const LEAST_VIEWS: usize = 6;
 }
 
 /// The head on its tour.
@@ -54,6 +61,8 @@ pub struct HeadViewSummary {
     pub corners: (usize, usize),
     /// Residual in the proposal, px.
     pub rms_px: Option<f64>,
+    /// Whether the eyes were colder than in others, and saw otherwise.
+    pub is_colder: bool,
 }
 
 /// A solved mount.

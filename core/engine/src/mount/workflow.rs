@@ -1,6 +1,6 @@
 //! What was seen, what was solved, what is in use.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
@@ -19,6 +19,7 @@ use crate::ground::jobs::JobId;
 use crate::ground::notice::NoticeLevel;
 use crate::ground::shelf::{InUse, Shelf};
 use crate::ground::text::sentence;
+use crate::ground::warming::Warmth;
 use crate::ground::{Moment, Workflow};
 use crate::mount::view::MountView;
 use crate::rig_models::{mount_in, mounts_in};
@@ -53,8 +54,6 @@ pub(super) enum Refusal {
 
 /// Head poses that are planned. More tell no more: on the twin the mount from 8 is as good as that from 14.
 const POSES: usize = 8;
-/// At least so many views are asked for.
-pub(super) const LEAST_VIEWS: usize = 6;
 
 /// What the workflow can see of the rest.
 pub struct MountAround {
@@ -260,8 +259,19 @@ impl MountWorkflow {
         (!known.is_empty()).then(|| known.iter().sum::<f64>() / known.len() as f64)
     }
 
+    /// Whether a view was taken while the eyes were colder than they were for another one: they turn in their mounts while
+    /// they warm up, so that both do not go together.
+    pub(super) fn is_colder(&self, view: &str) -> bool {
+        let taken_min = |view: &str| self.taken_min.get(view).copied();
+        let warmest_min = self.views.iter().filter_map(|view| taken_min(&view.name)).reduce(f64::max);
+        let both_min = taken_min(view).zip(warmest_min);
+        both_min.is_some_and(|(min, warmest)| matches!(Warmth::of(min, warmest), Warmth::Colder { .. }))
+    }
+
     fn delete(&mut self, is_deleted: impl Fn(&HeadView) -> bool) {
         let views: Vec<HeadView> = self.views.extract_if(.., |view| is_deleted(view)).collect();
+        // Of no views nothing is proposed.
+        self.proposal.take_if(|_| self.views.is_empty());
         if !views.is_empty() {
             self.deleted.push(Deleted { views, board: self.board, seen: self.seen_so_far() });
         }
@@ -349,11 +359,16 @@ impl Workflow for MountWorkflow {
             }
             MountCommand::Capture => self.wait_for_image(Waiting::Capture, around, context),
             MountCommand::Delete { view } => self.delete(|known| known.name == view),
+            MountCommand::DeleteColder => {
+                let colder = |view: &&HeadView| self.is_colder(&view.name);
+                let colder: BTreeSet<String> =
+                    self.views.iter().filter(colder).map(|view| view.name.clone()).collect();
+                self.delete(|known| colder.contains(&known.name));
+            }
             MountCommand::DeleteAll => {
                 self.delete(|_| true);
                 // Without its view no pose was seen.
                 (self.tour, self.seen) = (None, 0);
-                self.proposal = None;
             }
             MountCommand::Undo => {
                 if let Err(reason) = self.undo() {
@@ -362,6 +377,9 @@ impl Workflow for MountWorkflow {
             }
             MountCommand::Solve => self.solve(around, context),
             MountCommand::Accept => match self.proposal.clone() {
+                Some(_) if self.proposal_stale().is_some() => {
+                    context.refuse(self.proposal_stale().unwrap_or_default());
+                }
                 Some(mount) => {
                     // From here on the mount itself is what is taken back.
                     self.deleted.clear();

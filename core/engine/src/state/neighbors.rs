@@ -330,6 +330,7 @@ impl Neighbors<GraspWorkflow> for State {
             detector: (detector.clone(), provider),
             own_eyes: self.shown == world && self.shows_own_eyes(),
             source: source.view().clone(),
+            pair_age_s: self.rooms.live.newest_pair_age_s(self.clock.time().instant),
             found: detect.found().cloned(),
             in_experiment: trials.of(world).is_under_way(),
             goes_first: touch.of(world).in_the_way().or(looking),

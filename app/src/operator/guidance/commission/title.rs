@@ -122,6 +122,7 @@ mod tests {
 
         let far = |taken: usize, left: usize| {
             let view = |name: usize| HeadViewSummary {
+                is_colder: false,
                 name: name.to_string(),
                 pan_rad: 0.0,
                 tilt_rad: 0.0,

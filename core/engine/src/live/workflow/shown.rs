@@ -12,6 +12,11 @@ use crate::live::setup::NoSetup;
 use crate::live::view::{AimView, LiveView, NotMeasured, ProbeView, Statistics};
 
 impl LiveWorkflow {
+    /// How old the newest pair is, s; `None`: none came yet.
+    pub fn newest_pair_age_s(&self, now: Instant) -> Option<f64> {
+        Some(now.saturating_duration_since(self.clocks.source.newest_at()?).as_secs_f64())
+    }
+
     /// What the window shows.
     pub fn view(&mut self, skipped: Skipped, now: Instant) -> LiveView {
         self.clocks.source.set_skipped(skipped.source);
