@@ -57,7 +57,9 @@ impl Effect {
             Shape::TimeConstant(_) => (0..=6).map(|k| low * (high / low).powf(f64::from(k) / 6.0)).collect(),
             Shape::Limit => (0..=6).map(|k| low + (high - low) * f64::from(k) / 6.0).collect(),
             Shape::Teeth => (low.ceil() as i64..=high.floor() as i64).map(|order| order as f64).collect(),
-            Shape::None | Shape::OnceOrTwice | Shape::Growth(_) | Shape::OneOf(_) => vec![],
+            Shape::None | Shape::OnceOrTwice | Shape::Growth(_) | Shape::OneOf(_) | Shape::AnotherJoint => {
+                vec![]
+            }
         };
         if shapes.is_empty() {
             return vec![self.clone()];

@@ -36,15 +36,18 @@ pub struct EyesDeviation {
     /// Turns the right eye: rotation vector, its own axes, rad. Positive about y (down) looks
     /// further to the right.
     pub right_rad: Vector3<f64>,
+    /// Shifts the image of the left eye, px.
+    pub left_shift_px: [f64; 2],
     /// Shifts the image of the right eye, px.
     pub right_shift_px: [f64; 2],
     /// Both focal lengths are longer by this share.
     pub focal_scale: f64,
     /// The eyes stand further apart by this share.
     pub baseline_scale: f64,
-    /// Radial distortion left over, the first power of the lens: shift of a point away from the middle of the image by
-    /// this times the cube of how far off the axis it is, as a share of what that is at half the image's width, px.
-    pub distortion_px: f64,
+    /// Radial distortion left over of the left and of the right eye, the first power of the lens: shift of a point away from
+    /// the middle of the image by this times the cube of how far off the axis it is, as a share of what that is at half the
+    /// image's width, px.
+    pub distortion_px: [f64; 2],
     /// What is matched is not the place itself: shift in the images of both eyes, px.
     pub box_px: [f64; 2],
     /// Shift of the match in the right image along u only (disparity), px.
@@ -63,10 +66,11 @@ impl EyesDeviation {
             mount_rad: Vector3::zeros(),
             mount_m: Vector3::zeros(),
             right_rad: Vector3::zeros(),
+            left_shift_px: [0.0; 2],
             right_shift_px: [0.0; 2],
             focal_scale: 0.0,
             baseline_scale: 0.0,
-            distortion_px: 0.0,
+            distortion_px: [0.0; 2],
             box_px: [0.0; 2],
             disparity_px: 0.0,
             nearer_m: 0.0,
@@ -89,11 +93,14 @@ impl EyesDeviation {
             (self.right_rad.x, 1e-4),
             (self.right_rad.y, 1e-4),
             (self.right_rad.z, 1e-4),
+            (self.left_shift_px[0], 1e-2),
+            (self.left_shift_px[1], 1e-2),
             (self.right_shift_px[0], 1e-2),
             (self.right_shift_px[1], 1e-2),
             (self.focal_scale, 1e-4),
             (self.baseline_scale, 1e-4),
-            (self.distortion_px, 1e-2),
+            (self.distortion_px[0], 1e-2),
+            (self.distortion_px[1], 1e-2),
             (self.box_px[0], 1e-2),
             (self.box_px[1], 1e-2),
             (self.disparity_px, 1e-2),
@@ -105,15 +112,20 @@ impl EyesDeviation {
 
     /// The same to be changed.
     pub(crate) fn parts_mut(&mut self) -> Vec<&mut f64> {
+        let [left_u, left_v] = &mut self.left_shift_px;
         let [right_u, right_v] = &mut self.right_shift_px;
+        let [bulge_left, bulge_right] = &mut self.distortion_px;
         let [box_u, box_v] = &mut self.box_px;
         let turns = self.mount_rad.iter_mut().chain(&mut self.mount_m).chain(&mut self.right_rad);
         let rest = [
+            left_u,
+            left_v,
             right_u,
             right_v,
             &mut self.focal_scale,
             &mut self.baseline_scale,
-            &mut self.distortion_px,
+            bulge_left,
+            bulge_right,
             box_u,
             box_v,
             &mut self.disparity_px,
@@ -202,9 +214,20 @@ impl Eyes {
         let in_right = turned.inverse() * in_right;
         let left = self.cameras.left.project(&in_left.coords).ok()?;
         let right = self.cameras.right.project(&in_right.coords).ok()?;
-        let left = shifted(left, &in_left.coords, &self.cameras.left, deviation, [0.0; 2]);
+        let [bulge_left, bulge_right] = deviation.distortion_px;
+        let left = Imaged { bulge_px: bulge_left, shift_px: deviation.left_shift_px }.of(
+            left,
+            &in_left.coords,
+            &self.cameras.left,
+            deviation,
+        );
         let own = [deviation.right_shift_px[0] - deviation.disparity_px, deviation.right_shift_px[1]];
-        let right = shifted(right, &in_right.coords, &self.cameras.right, deviation, own);
+        let right = Imaged { bulge_px: bulge_right, shift_px: own }.of(
+            right,
+            &in_right.coords,
+            &self.cameras.right,
+            deviation,
+        );
         Some(vec![left.u_px, left.v_px, right.u_px, right.v_px])
     }
 
@@ -273,23 +296,31 @@ fn share_of_border(ray: &Vector3<f64>, camera: &plumbline_model::Camera) -> f64 
     }
 }
 
-/// A pixel as the deviating camera shows it.
-fn shifted(
-    pixel: Pixel<Raw>,
-    ray: &Vector3<f64>,
-    camera: &plumbline_model::Camera,
-    deviation: &EyesDeviation,
-    own: [f64; 2],
-) -> Pixel<Raw> {
-    let middle = camera.model.principal_point();
-    let off = (pixel.vector() - middle.vector()) * (1.0 + deviation.focal_scale);
-    let stretched = off
-        + off.try_normalize(1e-12).unwrap_or_default()
-            * (deviation.distortion_px * share_of_border(ray, camera).powi(3));
-    Pixel::new(
-        middle.u_px + stretched.x + deviation.box_px[0] + own[0],
-        middle.v_px + stretched.y + deviation.box_px[1] + own[1],
-    )
+/// What is off about the image of one eye alone, px.
+struct Imaged {
+    bulge_px: f64,
+    shift_px: [f64; 2],
+}
+
+impl Imaged {
+    /// A pixel as the deviating camera shows it.
+    fn of(
+        &self,
+        pixel: Pixel<Raw>,
+        ray: &Vector3<f64>,
+        camera: &plumbline_model::Camera,
+        deviation: &EyesDeviation,
+    ) -> Pixel<Raw> {
+        let middle = camera.model.principal_point();
+        let off = (pixel.vector() - middle.vector()) * (1.0 + deviation.focal_scale);
+        let outward = off.try_normalize(1e-12).unwrap_or_default();
+        let stretched = off + outward * (self.bulge_px * share_of_border(ray, camera).powi(3));
+        let [u_px, v_px] = self.shift_px;
+        Pixel::new(
+            middle.u_px + stretched.x + deviation.box_px[0] + u_px,
+            middle.v_px + stretched.y + deviation.box_px[1] + v_px,
+        )
+    }
 }
 
 #[cfg(test)]

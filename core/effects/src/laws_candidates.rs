@@ -126,6 +126,28 @@ fn every_kind_is_a_candidate_where_rows_can_show_it() {
 }
 
 #[test]
+fn a_joint_is_pulled_along_by_any_other_one_and_never_by_itself() {
+    let measurements = everything(20);
+    let arm = measurements.apparatuses.iter().find_map(|apparatus| apparatus.arm.as_ref()).expect("an arm");
+    let of_coupling = |effect: &Effect| effect.kind == Kind::JointCoupling;
+    let couplings: Vec<Effect> = Effect::candidates(&measurements).into_iter().filter(of_coupling).collect();
+    let joints: Vec<&str> = arm.parts.iter().map(|part| part.joint.as_str()).collect();
+    let mut pairs = BTreeSet::new();
+    for effect in &couplings {
+        let told = effect.report(&[0.02], &DMatrix::from_element(1, 1, 1e-6));
+        let from = told.iter().find(|one| one.name == "from_joint").and_then(|one| one.text.clone());
+        let from = from.expect("which joint pulls");
+        assert!(joints.contains(&from.as_str()) && from != effect.site, "{from} pulls {}", effect.site);
+        let title = &arm.parts.iter().find(|part| part.joint == from).expect("of this arm").title;
+        assert!(effect.title.ends_with(title.as_str()), "{}", effect.title);
+        pairs.insert((effect.site.clone(), from));
+    }
+    assert_eq!(pairs.len(), joints.len() * (joints.len() - 1), "every joint by every other one");
+    let beyond = Some(joints.len() as f64);
+    assert!(Effect::find("joint-coupling", joints[1], beyond, Some(arm), None).is_none(), "nobody pulls it");
+}
+
+#[test]
 fn what_no_column_shows_is_no_candidate() {
     let mut measurements = everything(40);
     for row in &mut measurements.rows {

@@ -36,12 +36,27 @@ pub struct Effect {
     pub(crate) across: Option<[Vector3<f64>; 2]>,
     /// Its joint slides: what is an angle elsewhere is a length.
     pub(super) slides: bool,
-    /// The joint before its own.
-    pub(super) partner: Option<String>,
+    /// Joints that may pull its own along, the most probable one first; see [`Self::puller`].
+    pub(super) pullers: Vec<Puller>,
     /// Not one effect but one of this kind at every site, each with its own values: a robot that
     /// was put together by hand has every zero off. Parameters are theirs in turn.
     pub(super) members: Vec<Effect>,
 }
+
+/// A joint that pulls another one along.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Puller {
+    /// Its place in the arm.
+    pub place: usize,
+    /// Its name.
+    pub joint: String,
+    /// Its name for people.
+    title: String,
+}
+
+/// Sites of what is off about one eye.
+pub(super) const LEFT: &str = "left";
+pub(super) const RIGHT: &str = "right";
 
 /// At most so many joints have their effects in one.
 const MOST_MEMBERS: usize = 12;
@@ -90,8 +105,9 @@ impl Effect {
         let kind = Kind::of_id(id)?;
         let in_set = eyes.filter(|_| !site.is_empty()).and_then(|_| Self::in_set(kind, site));
         let at_site = || Self::sites(kind, arm, eyes).into_iter().find(|effect| effect.site == site);
-        let found = in_set.or_else(at_site)?;
-        Some(found.with_shape(shape))
+        let found = in_set.or_else(at_site)?.with_shape(shape);
+        // Nobody pulls it whom this arm does not have.
+        (found.pullers.is_empty() || found.puller().is_some()).then_some(found)
     }
 
     /// The same in another shape.
@@ -104,6 +120,9 @@ impl Effect {
             true => format!("{constant}{GROWS}"),
             false => constant.to_owned(),
         };
+        if let (Some(puller), Some((whose, _))) = (self.puller(), self.title.split_once(": ")) {
+            self.title = format!("{whose}: pulled along by {}", puller.title);
+        }
         self
     }
 
@@ -135,7 +154,7 @@ impl Effect {
             joint,
             across: None,
             slides: false,
-            partner: None,
+            pullers: vec![],
             members: vec![],
         }
     }
@@ -176,6 +195,16 @@ impl Effect {
         self.shape.map_or(0, |shape| shape as usize)
     }
 
+    /// The joint that pulls its own along, where one does.
+    pub(super) fn puller(&self) -> Option<&Puller> {
+        self.pullers.get(self.choice())
+    }
+
+    /// How many joints may pull its own along.
+    pub(crate) fn puller_count(&self) -> usize {
+        self.pullers.len()
+    }
+
     /// The law of what grows. The shape holds it: whole seconds of the time constant, and its second number in
     /// thousandths of its seconds after the point (240.06: 240 s, 60 s); negative where that number is a second
     /// time constant and no delay.
@@ -194,7 +223,8 @@ impl Effect {
             | Shape::Teeth
             | Shape::Limit
             | Shape::Moment
-            | Shape::OneOf(_) => None,
+            | Shape::OneOf(_)
+            | Shape::AnotherJoint => None,
         }
     }
 
@@ -241,17 +271,19 @@ impl Growth {
 fn of_arm(kind: Kind, arm: &Arm) -> Vec<Effect> {
     let one = |site: &str| vec![Effect::new(kind, site, "", None)];
     match kind.entry().site {
-        Site::Joint => joints(kind, arm, 0),
-        // The first joint has none before it.
-        Site::JointAfterAnother => joints(kind, arm, 1),
+        Site::Joint => joints(kind, arm),
+        Site::JointBesideAnother => {
+            let all = joints(kind, arm).into_iter().map(|effect| with_pullers(effect, arm));
+            all.filter(|effect| !effect.pullers.is_empty()).collect()
+        }
         Site::JointOrAllAlike => {
-            let mut all = joints(kind, arm, 0);
+            let mut all = joints(kind, arm);
             all.push(Effect::new(kind, "", "all joints alike", None));
             all
         }
         Site::JointOrEvery(_) => {
             let (slides, turns): (Vec<_>, Vec<_>) =
-                joints(kind, arm, 0).into_iter().partition(|effect| effect.slides);
+                joints(kind, arm).into_iter().partition(|effect| effect.slides);
             [and_every(kind, "every joint", turns), slides].concat()
         }
         Site::Link => links(kind, arm),
@@ -264,6 +296,10 @@ fn of_arm(kind: Kind, arm: &Arm) -> Vec<Effect> {
     }
 }
 
+fn one_eye(kind: Kind) -> Vec<Effect> {
+    vec![Effect::new(kind, RIGHT, "right eye", None), Effect::new(kind, LEFT, "left eye", None)]
+}
+
 fn of_eyes(kind: Kind, eyes: &Eyes) -> Vec<Effect> {
     let Site::OfEyes(site) = kind.entry().site else { return vec![] };
     match site {
@@ -271,8 +307,10 @@ fn of_eyes(kind: Kind, eyes: &Eyes) -> Vec<Effect> {
             let joints = eyes.neck.parts.iter().enumerate();
             joints.map(|(j, part)| Effect::new(kind, &part.joint, &part.title, Some(j))).collect()
         }
-        EyeSite::Right => vec![Effect::new(kind, "right", "", None)],
+        EyeSite::Right => vec![Effect::new(kind, RIGHT, "", None)],
         EyeSite::Both => vec![Effect::new(kind, "eyes", "", None)],
+        EyeSite::One => one_eye(kind),
+        EyeSite::BothOrOne => [vec![Effect::new(kind, "eyes", "both eyes", None)], one_eye(kind)].concat(),
         // Which sets there are, only rows say.
         EyeSite::Set => vec![],
     }
@@ -286,22 +324,31 @@ fn and_every(kind: Kind, whose: &str, mut single: Vec<Effect>) -> Vec<Effect> {
     single
 }
 
-/// Joints of an arm from one of them on.
-fn joints(kind: Kind, arm: &Arm, first: usize) -> Vec<Effect> {
-    (first..arm.len())
-        .filter(|&j| {
-            let coupled = matches!(kind.entry().site, Site::JointAfterAnother);
-            let slides = arm.parts[j].slides || coupled && arm.parts[j - 1].slides;
-            !slides || kind.entry().is(Is::OfSlides)
-        })
+/// Joints of an arm.
+fn joints(kind: Kind, arm: &Arm) -> Vec<Effect> {
+    (0..arm.len())
+        .filter(|&j| !arm.parts[j].slides || kind.entry().is(Is::OfSlides))
         .map(|j| {
             let part = &arm.parts[j];
-            let partner = j.checked_sub(1).map(|before| arm.parts[before].joint.clone());
             let across = Some(across(&part.axis));
             let slides = part.slides;
-            Effect { across, slides, partner, ..Effect::new(kind, &part.joint, &part.title, Some(j)) }
+            Effect { across, slides, ..Effect::new(kind, &part.joint, &part.title, Some(j)) }
         })
         .collect()
+}
+
+/// With the joints that may pull its own along: the one before it first, of the first joint the one behind it. What
+/// slides pulls no angle.
+fn with_pullers(effect: Effect, arm: &Arm) -> Effect {
+    let Some(j) = effect.joint else { return effect };
+    let nearest = j.checked_sub(1).unwrap_or(j + 1);
+    let others = (0..arm.len()).filter(|other| *other != j && *other != nearest);
+    let pullers = std::iter::once(nearest)
+        .chain(others)
+        .filter_map(|place| Some((place, arm.parts.get(place).filter(|part| !part.slides)?)))
+        .map(|(place, part)| Puller { place, joint: part.joint.clone(), title: part.title.clone() })
+        .collect();
+    Effect { pullers, ..effect }.with_shape(None)
 }
 
 /// Links between the joints of an arm; the way to the tip belongs to the tip's offset.

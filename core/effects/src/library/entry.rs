@@ -49,8 +49,8 @@ pub(crate) enum Site {
     /// The same, or at every joint at once, each with its own values, as when an arm is put
     /// together: parameters at up to twelve sites in turn.
     JointOrEvery(&'static [Parameter]),
-    /// At each joint that has another one before it.
-    JointAfterAnother,
+    /// At each joint that another one may pull along.
+    JointBesideAnother,
     /// At each link between two joints; the way to the tip belongs to the tip's offset.
     Link,
     /// The same, or at every link at once.
@@ -80,6 +80,10 @@ pub(crate) enum EyeSite {
     Right,
     /// At both.
     Both,
+    /// At one of both. What grows at the left one is told as what grows at the right one, the other way.
+    One,
+    /// At both alike, or at one of them alone.
+    BothOrOne,
     /// At the right eye, while one set of rows was measured: the site is the label of the set.
     Set,
 }
@@ -113,6 +117,9 @@ pub(crate) enum Shape {
     Growth(&'static [Parameter]),
     /// `None`: the first of some things; 1: the second, and so on.
     OneOf(&'static [&'static str]),
+    /// Which other joint pulls: `None`: the one before (of the first joint the one behind it); 1: the first one of the
+    /// others, in the order of the arm, and so on.
+    AnotherJoint,
 }
 
 /// What effects of a kind do.
@@ -168,9 +175,10 @@ impl Turning<'_> {
         self.situation.angles_rad[self.joint]
     }
 
-    /// Of the joint before.
-    pub fn angle_before_rad(&self) -> f64 {
-        self.joint.checked_sub(1).map_or(0.0, |before| self.situation.angles_rad[before])
+    /// Of the joint that pulls this one along.
+    pub fn angle_of_puller_rad(&self) -> f64 {
+        let puller = self.effect.puller().and_then(|puller| self.situation.angles_rad.get(puller.place));
+        puller.copied().unwrap_or(0.0)
     }
 
     pub fn torque_nm(&self) -> f64 {

@@ -1,5 +1,6 @@
 //! What is known of rows, and in which shapes an effect is looked for in them.
 
+use super::effect::LEFT;
 use super::entry::Shape;
 use super::{Effect, Kind};
 
@@ -116,6 +117,11 @@ impl Known {
                 let ends = [all.first(), all.last()].map(|end| end.copied().unwrap_or(0.0));
                 with_shapes(&effect, &thinned(&all, MOST_MOMENTS), ends)
             }
+            Shape::AnotherJoint => {
+                let others =
+                    (1..effect.puller_count()).map(|other| effect.clone().with_shape(Some(other as f64)));
+                std::iter::once(effect.clone()).chain(others).collect()
+            }
             Shape::Growth(_) => {
                 let grown = self.grown(&effect);
                 [vec![effect], grown].concat()
@@ -131,6 +137,9 @@ impl Known {
 impl Known {
     /// An effect of the eyes with every time law that is tried.
     fn grown(&self, effect: &Effect) -> Vec<Effect> {
+        if effect.site == LEFT {
+            return vec![];
+        }
         let span_s = span(&self.eye_secs);
         if span_s < SHORTEST_SPAN_S {
             return vec![];

@@ -53,7 +53,7 @@ impl Effect {
 
     /// Of what another joint pulls along.
     pub(super) fn coupled(&self, fit: &Fit<'_>) -> Vec<Reported> {
-        let text = self.partner.clone();
+        let text = self.puller().map(|puller| puller.joint.clone());
         vec![
             fit.plain(0, "ratio"),
             Reported { name: "from_joint".to_owned(), value: 0.0, low: 0.0, high: 0.0, text },
@@ -111,7 +111,12 @@ impl Effect {
                 };
                 vec![known("time_constant_s", growth.time_constant_s), second]
             }),
-            Shape::None | Shape::OnceOrTwice | Shape::Teeth | Shape::Limit | Shape::OneOf(_) => vec![],
+            Shape::None
+            | Shape::OnceOrTwice
+            | Shape::Teeth
+            | Shape::Limit
+            | Shape::OneOf(_)
+            | Shape::AnotherJoint => vec![],
         }
     }
 

@@ -79,6 +79,10 @@ const ONE_LOGGED_EARLY: f64 = 0.002;
 /// shapes are for robots whose rows say so.
 const LOAD_AS_DESCRIBED: f64 = 0.85;
 
+/// A joint that another one pulls along: how probable it is that this is the one before it, whose cable or gear runs through
+/// its own. The others have the rest in common.
+const BY_THE_ONE_BEFORE: f64 = 0.7;
+
 /// How probable it is that what is off about eyes is so all the while, where the rows could show one that grows as they warm up:
 /// a grid of a few minutes shows the dozen time constants that are tried for one thing.
 const CONSTANT: f64 = 0.7;
@@ -206,6 +210,8 @@ impl Library {
             let share = match (effect.kind, effect.shape) {
                 (Kind::GravityBacklash, None) if others > 0 => LOAD_AS_DESCRIBED,
                 (Kind::GravityBacklash, Some(_)) => (1.0 - LOAD_AS_DESCRIBED) / others.max(1) as f64,
+                (Kind::JointCoupling, None) if others > 0 => BY_THE_ONE_BEFORE,
+                (Kind::JointCoupling, Some(_)) => (1.0 - BY_THE_ONE_BEFORE) / others.max(1) as f64,
                 _ if may_grow && effect.growth().is_none() => CONSTANT / (others + 1 - growing) as f64,
                 _ if may_grow => (1.0 - CONSTANT) / growing as f64,
                 _ => 1.0 / (others + 1) as f64,

@@ -1,5 +1,6 @@
 //! What can be wrong with the eyes, and with what they make of an image.
 
+use super::super::effect::{LEFT, RIGHT};
 use super::{Act, Effect, Entry, EyeSite, Parameter, Shape, Site, TILT, parameter, vector};
 
 /// Eyes that warm up turn; they do not wander through the head.
@@ -73,18 +74,20 @@ pub(super) static EYE_YAW: Entry = Entry {
 };
 
 pub(super) static IMAGE_SHIFT: Entry = Entry {
-    about: "image of the right eye shifted",
+    about: "image shifted",
     meaning: "The image of one eye is shifted on its sensor.",
     remedy: "Check that the lens is screwed tight; calibrate warm.",
     parameters: &[parameter("du_px", 1.5), parameter("dv_px", 1.5)],
     sliding: &[],
-    site: Site::OfEyes(EyeSite::Right),
+    site: Site::OfEyes(EyeSite::One),
     shape: Shape::Growth(&SHIFT_ALONG),
     shown: |rows| rows.eyes,
     act: Act::Eyes(|effect, situation, values, deviation| {
         let part = effect.part(situation.t_secs);
-        deviation.right_shift_px[0] += values[0] * part;
-        deviation.right_shift_px[1] += values.get(1).copied().unwrap_or(0.0) * part;
+        let is_left = effect.site == LEFT;
+        let shift_px = if is_left { &mut deviation.left_shift_px } else { &mut deviation.right_shift_px };
+        shift_px[0] += values[0] * part;
+        shift_px[1] += values.get(1).copied().unwrap_or(0.0) * part;
     }),
     reported: Effect::plain,
     is: &[],
@@ -149,10 +152,14 @@ pub(super) static LENS_DISTORTION: Entry = Entry {
     remedy: "Calibrate with the board out to the corners of the image.",
     parameters: &[parameter("k_px", 8.0)],
     sliding: &[],
-    site: Site::OfEyes(EyeSite::Both),
+    site: Site::OfEyes(EyeSite::BothOrOne),
     shape: Shape::None,
     shown: |rows| rows.eyes,
-    act: Act::Eyes(|_, _, values, deviation| deviation.distortion_px += values[0]),
+    act: Act::Eyes(|effect, _, values, deviation| {
+        let [left, right] = &mut deviation.distortion_px;
+        *left += if effect.site == RIGHT { 0.0 } else { values[0] };
+        *right += if effect.site == LEFT { 0.0 } else { values[0] };
+    }),
     reported: Effect::plain,
     is: &[],
 };

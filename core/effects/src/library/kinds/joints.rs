@@ -168,15 +168,15 @@ pub(super) static SLIPPED_HORN: Entry = Entry {
 };
 
 pub(super) static JOINT_COUPLING: Entry = Entry {
-    about: "pulled along by the joint before",
+    about: "pulled along by another joint",
     meaning: "The joint moves along with another one: a cable or tendon pulls.",
     remedy: "Give the cable more slack, or route it through the axis.",
     parameters: &[parameter("ratio", 0.025)],
     sliding: &[],
-    site: Site::JointAfterAnother,
-    shape: Shape::None,
+    site: Site::JointBesideAnother,
+    shape: Shape::AnotherJoint,
     shown: |rows| rows.arm,
-    act: Act::Turn(|at| at.value() * at.angle_before_rad()),
+    act: Act::Turn(|at| at.value() * at.angle_of_puller_rad()),
     reported: Effect::coupled,
     is: &[Is::Planned, Is::SeenBehindGear],
 };
