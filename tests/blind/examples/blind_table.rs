@@ -36,7 +36,12 @@ mod told;
 use judge::AnyError;
 
 /// Cases are made anew when the physics changes.
-const PHYSICS: &str = "v10";
+fn physics(generator: Source) -> &'static str {
+    match generator {
+        Source::Arms => "v11",
+        _ => "v10",
+    }
+}
 
 struct Arguments {
     generator: Source,
@@ -91,8 +96,12 @@ fn main() -> Result<(), AnyError> {
     let arguments = arguments()?;
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
     let generator: &str = arguments.generator.into();
-    let folder =
-        target.join("blind").join(format!("{PHYSICS}-{generator}-{}-{}", arguments.seed, arguments.cases));
+    let folder = target.join("blind").join(format!(
+        "{}-{generator}-{}-{}",
+        physics(arguments.generator),
+        arguments.seed,
+        arguments.cases
+    ));
     let bench = Bench::usual()?;
     let planner = Planner::new(&bench)?;
     let orders: Vec<Order<'_>> = orders(&arguments, &bench, &planner)

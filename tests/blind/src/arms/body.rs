@@ -128,7 +128,7 @@ impl<'a> Body<'a> {
                 Kind::JointScale => amount * motor,
                 // The encoder sees the sum of the joint's direction and of the magnet's place: a triangle.
                 Kind::JointEccentricity => (amount * (motor - secret.magnet_rad()).sin()).asin(),
-                Kind::JointCoupling => amount * moment.motors_rad[j - 1],
+                Kind::JointCoupling => amount * moment.motors_rad[secret.puller(self.robot.len())],
                 Kind::Backlash => -0.5 * amount * moment.way[j],
                 Kind::SlippedHorn if moment.over >= secret.when => amount,
                 Kind::ServoWarmUp => amount * moment.warm,

@@ -144,7 +144,6 @@ impl Scene for Maker<'_> {
         // What slides has less that can be wrong, and no cable of another joint goes there.
         let parts = &self.setup.robot.parts;
         let from = match kind {
-            Kind::JointCoupling => joint.checked_sub(1),
             Kind::FarCable => Some((joint + 2) % parts.len()),
             _ => None,
         };
@@ -152,8 +151,8 @@ impl Scene for Maker<'_> {
         if slides || from.is_some_and(|from| parts[from].slides) {
             return None;
         }
-        // A cable or a link comes from the joint before, and has a length.
-        let needs_before = matches!(kind, Kind::JointCoupling | Kind::LinkLength | Kind::LinkBending);
+        // A link comes from the joint before, and has a length.
+        let needs_before = matches!(kind, Kind::LinkLength | Kind::LinkBending);
         let length_m = self.setup.robot.parts[joint].shift_m.norm();
         if needs_before && (joint == 0 || length_m < 0.04) {
             return None;
@@ -173,7 +172,10 @@ impl Scene for Maker<'_> {
             shape = shape.try_normalize(1e-6)?;
         }
         let when = random.random_range(0.35..0.65);
-        Some(Secret { kind, joint, amount: sign * kind.usual_and_most()[0], shape: shape.into(), when })
+        let secret =
+            Secret { kind, joint, amount: sign * kind.usual_and_most()[0], shape: shape.into(), when };
+        let is_pulled = kind != Kind::JointCoupling || !parts[secret.puller(parts.len())].slides;
+        is_pulled.then_some(secret)
     }
 
     fn shown(&self, secret: &Secret) -> Option<DVector<f64>> {

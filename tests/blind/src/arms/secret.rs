@@ -31,7 +31,7 @@ pub enum Kind {
     LinkBending,
     /// The base stands on a spring.
     TorsoLean,
-    /// The motor of the joint before pulls this one along.
+    /// The motor of another joint pulls this one along.
     JointCoupling,
     /// The axis was drilled at an angle.
     AxisSkew,
@@ -223,6 +223,20 @@ impl Secret {
         }
     }
 
+    /// Which joint of so many pulls its own along: in half of the cases the one before it, else any other one.
+    pub fn puller(&self, joints: usize) -> usize {
+        // Of a direction at random this is as often in any part of its range.
+        let draw = self.shape[2];
+        match self.joint.checked_sub(1).filter(|_| draw < 0.0) {
+            Some(before) => before,
+            None => {
+                let others = joints.saturating_sub(1).max(1);
+                let other = ((draw.abs() * others as f64) as usize).min(others - 1);
+                other + usize::from(other >= self.joint)
+            }
+        }
+    }
+
     /// The magnet lies in this direction of the joint, rad.
     pub fn magnet_rad(&self) -> f64 {
         self.shape[1].atan2(self.shape[0])
@@ -233,5 +247,29 @@ impl Secret {
         let turned = if self.amount < 0.0 { std::f64::consts::PI } else { 0.0 };
         let phase = turned - self.magnet_rad();
         phase.sin().atan2(phase.cos())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_joint_is_pulled_along_by_each_of_the_others_and_mostly_by_the_one_before() {
+        let pullers = |joint: usize| {
+            let of = |draw: f64| {
+                let shape = [0.0, 0.0, draw];
+                Secret { kind: Kind::JointCoupling, joint, amount: 0.01, shape, when: 0.5 }.puller(6)
+            };
+            (-100..=100).map(|k| of(f64::from(k) / 100.0)).collect::<Vec<_>>()
+        };
+        for joint in 0..6 {
+            let all = pullers(joint);
+            for other in 0..6 {
+                assert_eq!(all.contains(&other), other != joint, "{other} pulls {joint}");
+            }
+            let before = all.iter().filter(|other| **other + 1 == joint).count();
+            assert!(joint == 0 || before > 100, "{joint}: {before}");
+        }
     }
 }
