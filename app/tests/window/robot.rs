@@ -290,6 +290,18 @@ fn connecting_says_that_nothing_moves_and_keeps_the_sheet_open() {
 }
 
 #[test]
+fn where_it_stands_in_a_pose_of_its_own_that_is_said() {
+    let rig = rig();
+    let home = rig.home();
+    for (measured, is_home) in [(home.clone(), true), (home.with(&rig.arms[0].joints[..1], &[0.4]), false)] {
+        let at = RobotView { measured: Some(measured), ..connected() };
+        let window = Fake::over(with_robot(at)).window(on_robot());
+        assert_eq!(says(&window, "It stands in the pose Home."), is_home);
+        assert!(says(&window, "Drag a joint or choose a pose"));
+    }
+}
+
+#[test]
 fn a_sheet_on_which_nothing_is_left_to_do_ends_with_done() {
     let fake = Fake::over(with_robot(RobotView { rig: connected().rig, ..RobotView::default() }));
     let mut window = fake.window(on_robot());

@@ -3,7 +3,10 @@
 
 use plumbline_effects::{Assumed, Measurements};
 
-use crate::compare::{self, Compared};
+use plumbline_model::JobContext;
+
+use crate::compare::{self, Compared, Structure};
+use crate::error::GapError;
 use crate::finding::{Dependence, FloorSource, NamedEffect, Shown, Verdict};
 use crate::search::{self, Found, still_right};
 
@@ -153,11 +156,38 @@ pub(crate) fn still_structured(found: &mut Found, used: &Measurements, compared:
     if structure.size_sigmas < LEAST_STRUCTURE.max(STRUCTURE_SHARE * compared.comparison.size_sigmas) {
         return;
     }
+    depends_on(found, &structure);
+    misled(found, 0.95);
+}
+
+/// Where nothing was measured twice, what rows that are near one another still leave alike is no noise: nothing of that has a
+/// name, and that is no all-clear.
+///
+/// # Errors
+/// Cancelled.
+pub(crate) fn still_alike(
+    found: &mut Found,
+    used: &Measurements,
+    seed: u64,
+    context: &dyn JobContext,
+) -> Result<(), GapError> {
+    if found.verdict != Verdict::NoGap || found.floor.source == FloorSource::Repeats {
+        return Ok(());
+    }
+    let left = compare::residuals(used, &found.assumed);
+    if let Some(alike) = compare::alike(used, &left, seed, context)? {
+        depends_on(found, &alike);
+        misled(found, 0.95);
+    }
+    Ok(())
+}
+
+/// What is left depends on this first of all.
+fn depends_on(found: &mut Found, structure: &Structure) {
     found.unexplained.depends_on.retain(|known| known.on != structure.on);
     let share = 1.0 - structure.left.iter().copied().fold(1.0, f64::min);
-    let of = structure.of.to_owned();
-    found.unexplained.depends_on.insert(0, Dependence { on: structure.on, of, share, formula: None });
-    misled(found, 0.95);
+    let (on, of) = (structure.on.clone(), structure.of.to_owned());
+    found.unexplained.depends_on.insert(0, Dependence { on, of, share, formula: None });
 }
 
 /// Something unknown is at work beside what was found: names are less sure than they look.

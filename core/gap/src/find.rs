@@ -106,6 +106,7 @@ fn found_in(
     }
     flag_outliers(&mut compared, &kept, &found);
     bounds::still_structured(&mut found, &used, &compared);
+    bounds::still_alike(&mut found, &used, options.seed, context)?;
     bounds::bound_by_own_rows(&mut found, &used);
     bounds::bound_by_held_out(&mut found, &used, &shown, &mut compared.warnings);
     let partial = offer::offer(&mut found, &mut shown, &mut compared.warnings);

@@ -1,8 +1,8 @@
 //! What to do next with the robot and with the mount of its eyes.
 
 use plumbline_engine::view::{
-    CaptureHint, Connection, JointView, MotionState, MountView, Preview, RobotView, SourceStatus, StepState,
-    TourWaits,
+    CaptureHint, Connection, JointView, MotionState, MountView, PoseView, Preview, RobotView, SourceStatus,
+    StepState, TourWaits,
 };
 use plumbline_engine::{SourceSpec, View};
 use plumbline_model::robot::JointIndex;
@@ -18,6 +18,10 @@ use crate::operator::{Action, MountAction, RobotAction, Screen};
 
 /// A move that turns no joint by half a degree is said to be a small one, rad.
 const LITTLE_RAD: f64 = 8.7e-3;
+/// A joint this near to where a pose has it stands in the pose: servos give way by a degree or two, rad.
+const IN_POSE_RAD: f64 = 0.05;
+/// A pose of at least so many joints is one of arms.
+const POSE_OF_ARMS: usize = 6;
 /// A move that turns no joint by more than this is none, rad.
 const NO_WAY_RAD: f64 = 2e-3;
 /// Less than that beyond a limit nobody sees, rad.
@@ -169,12 +173,22 @@ pub(super) fn robot(view: &View) -> Guidance {
         }
         _ => {
             let said = "Drag a joint or choose a pose: it is shown first, and moves only when you say so.";
-            match carried(view) {
-                Some(carried) => say(format!("{carried} {said}")),
-                None => say(said),
-            }
+            let stands = stands_in(robot).map(|pose| format!("It stands in the pose {}.", pose.title));
+            let all = [stands, carried(view), Some(said.to_owned())];
+            say(all.into_iter().flatten().collect::<Vec<_>>().join(" "))
         }
     }
+}
+
+/// The pose in which the robot stands, the first of those offered. That of a hand, or of the head, says nothing of the arms.
+fn stands_in(robot: &RobotView) -> Option<&PoseView> {
+    robot.poses.iter().find(|pose| {
+        let joints: Vec<JointIndex> = pose.joints.iter().map(|(joint, _)| *joint).collect();
+        let measured = robot.known(&joints).filter(|_| joints.len() >= POSE_OF_ARMS);
+        measured.is_some_and(|measured| {
+            pose.joints.iter().all(|(joint, rad)| (measured[*joint] - rad).abs() < IN_POSE_RAD)
+        })
+    })
 }
 
 /// What a hand holds, or may, goes along with whatever the arm does.

@@ -4,7 +4,7 @@ use plumbline_model::robot::CalibratedAt;
 use serde::{Deserialize, Serialize};
 use strum::{EnumString, IntoStaticStr, VariantArray};
 
-use super::entry::{Is, Shape, Site};
+use super::entry::{EyeSite, Is, Shape, Site};
 
 /// What kind of effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -156,6 +156,11 @@ impl Kind {
     /// Whether it concerns the eyes.
     pub fn is_of_eyes(self) -> bool {
         matches!(self.entry().site, Site::OfEyes(_))
+    }
+
+    /// Whether it may be at one eye or the other: both mean nearly the same, since how both sit in the head takes up the rest.
+    pub fn is_of_one_eye(self) -> bool {
+        matches!(self.entry().site, Site::OfEyes(EyeSite::One | EyeSite::BothOrOne))
     }
 
     /// Whether an effect of this kind in this shape turns or shifts the eyes the more, the longer they are on.

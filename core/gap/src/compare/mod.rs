@@ -1,6 +1,7 @@
 //! How far measurement and model lie apart: frames placed, noise known, and whether that is more
 //! than noise.
 
+mod alike;
 mod displacement;
 mod drift;
 mod frames;
@@ -26,9 +27,11 @@ use plumbline_model::JobContext;
 use rayon::prelude::*;
 
 pub(crate) use crate::statistics::{NORMAL_95, f_tail, median, robust_sd};
+pub(crate) use alike::alike;
 pub(crate) use displacement::{at_m, of_arm};
 pub(crate) use frames::placed;
 pub(crate) use noise::{by_neighbors_of_eyes, structure_of};
+pub(crate) use structure::Structure;
 
 use crate::covariates::Covariates;
 use crate::error::GapError;
@@ -145,6 +148,13 @@ pub(crate) fn compare(
     if let Some(structure) = &noise.structure {
         misfit.p_value = misfit.p_value.min(structure.p_value);
         misfit.size_sigmas = misfit.size_sigmas.max(structure.size_sigmas);
+    }
+    // Repeats tell the noise whatever their neighbors do.
+    if noise.floor.source != FloorSource::Repeats
+        && let Some(alike) = alike(measurements, &residuals, seed, context)?
+    {
+        misfit.p_value = misfit.p_value.min(alike.p_value);
+        misfit.size_sigmas = misfit.size_sigmas.max(alike.size_sigmas);
     }
     let is_related = related(measurements, &residuals);
     if !is_related {

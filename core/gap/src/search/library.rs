@@ -1,6 +1,6 @@
 //! Candidates and free-form rivals as blocks of columns.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use plumbline_effects::measurements::Measurements;
 use plumbline_effects::{Effect, Kind};
@@ -195,7 +195,13 @@ impl Library {
             .filter(|block| block.grows == Some(Grows::Nodding))
             .map(|block| block.name)
             .collect();
-        let told = names.len() - nodding.len().saturating_sub(1);
+        // One eye or the other is one thing that can be wrong.
+        let mut eyes_of = BTreeMap::<Kind, BTreeSet<usize>>::new();
+        for (block, effect) in blocks.iter().zip(&effects).filter(|(_, effect)| effect.kind.is_of_one_eye()) {
+            eyes_of.entry(effect.kind).or_default().insert(block.name);
+        }
+        let same: usize = eyes_of.values().map(|names| names.len() - 1).sum();
+        let told = names.len() - nodding.len().saturating_sub(1) - same;
         let odds = 1.0 / (told as f64).max(2.0);
         for (block, effect) in blocks.iter_mut().zip(&effects) {
             let alone = effect.kind == Kind::EarlyLog && !effect.site.is_empty();
@@ -204,6 +210,7 @@ impl Library {
                 (_, true) => ONE_LOGGED_EARLY,
                 (false, false) => 1.0,
             };
+            let one_of = eyes_of.get(&effect.kind).map_or(1, BTreeSet::len) as f64;
             let others = shapes[block.name] - 1;
             let growing = growths[block.name];
             let may_grow = growing > 0 && growing <= others;
@@ -216,7 +223,7 @@ impl Library {
                 _ if may_grow => (1.0 - CONSTANT) / growing as f64,
                 _ => 1.0 / (others + 1) as f64,
             };
-            block.log_prior = (many * odds * share).ln();
+            block.log_prior = (many * odds * share / one_of).ln();
         }
         Self { effects, blocks, names, columns: start }
     }
