@@ -26,6 +26,9 @@ const ALIKE: f64 = 0.15;
 const LARGEST_NOISE: f64 = 3.9;
 /// Repeats that still depend on something by less than this (units of what is left) are noise enough …
 const LEAST_STRUCTURE: f64 = 0.4;
+/// … and by less than this where that is how far joints stop short of their goals: a servo goes on by as much while the finger
+/// presses, and no log of one moment holds that. An early log that does more has its name.
+const LEAST_SHORT: f64 = 1.0;
 /// … or by less than this share of the gap.
 const STRUCTURE_SHARE: f64 = 0.2;
 
@@ -153,7 +156,8 @@ pub(crate) fn still_structured(found: &mut Found, used: &Measurements, compared:
     if of(&found.probable).is_none() {
         return;
     }
-    if structure.size_sigmas < LEAST_STRUCTURE.max(STRUCTURE_SHARE * compared.comparison.size_sigmas) {
+    let least = if structure.on == compare::HOW_FAR_SHORT { LEAST_SHORT } else { LEAST_STRUCTURE };
+    if structure.size_sigmas < least.max(STRUCTURE_SHARE * compared.comparison.size_sigmas) {
         return;
     }
     depends_on(found, &structure);

@@ -42,6 +42,9 @@ pub fn lagged(measurements: &Measurements, assumed: &Assumed, row: usize) -> Vec
     tangents.map_or(vec![], |tangents| tangents.effects.column(0).iter().copied().collect())
 }
 
+/// What repeats depend on where angles were logged too early.
+pub const HOW_FAR_SHORT: &str = "how far joints stop short of their goals";
+
 /// How far the joints lagged: where that differs between repeats, angles that were logged too early go with it.
 pub fn by_lag(rows: &[Repeat], spread: &Spread, fits: usize) -> Option<Structure> {
     if rows.iter().any(|row| row.lagged.is_empty()) {
@@ -59,8 +62,7 @@ pub fn by_lag(rows: &[Repeat], spread: &Spread, fits: usize) -> Option<Structure
     let lost = off.norm_squared() - rest.norm_squared();
     let p_value = f_tail(lost / (rest.norm_squared() / free).max(1e-300), 1.0, free) * fits as f64;
     let shares = spread.shares_of(&rest, 1.0 / spread.counted.len() as f64);
-    (p_value <= SIGNIFICANT)
-        .then(|| Structure::new("how far joints stop short of their goals".to_owned(), p_value, shares))
+    (p_value <= SIGNIFICANT).then(|| Structure::new(HOW_FAR_SHORT.to_owned(), p_value, shares))
 }
 
 /// How the joints came, the one that tells most first, as long as each is beyond doubt. `fits`: all that is tried.

@@ -30,6 +30,7 @@ pub(crate) use crate::statistics::{NORMAL_95, f_tail, median, robust_sd};
 pub(crate) use alike::alike;
 pub(crate) use displacement::{at_m, of_arm};
 pub(crate) use frames::placed;
+pub(crate) use levers::HOW_FAR_SHORT;
 pub(crate) use noise::{by_neighbors_of_eyes, structure_of};
 pub(crate) use structure::Structure;
 

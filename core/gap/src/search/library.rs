@@ -57,7 +57,10 @@ impl Block {
     /// its members.
     pub fn excludes(&self, other: &Self) -> bool {
         let of_one_kind = self.kind.is_some() && self.kind == other.kind;
+        // One eye that is off and the other one as well, each by its own, is neither.
+        let is_of_one_eye = of_one_kind && self.kind.is_some_and(Kind::is_of_one_eye);
         self.name == other.name
+            || is_of_one_eye
             || self.grows.is_some() && self.grows == other.grows
             || of_one_kind && self.is_family != other.is_family
     }
@@ -249,6 +252,18 @@ mod tests {
         let (zeros, zero) = (place(Kind::JointZero, true), place(Kind::JointZero, false));
         assert!(zeros.excludes(zero) && zero.excludes(zeros));
         assert!(!zeros.excludes(place(Kind::AxisSkew, false)) && !zero.excludes(place(Kind::AxisSkew, true)));
+    }
+
+    #[test]
+    fn one_eye_or_the_other_is_off_and_no_likelier_for_being_two() {
+        let rig = Rig::built_in("nico").expect("comes along");
+        let eyes = plumbline_effects::eyes::Eyes::of_rig(&rig).expect("eyes");
+        let of = |kind: Kind| Effect::sites(kind, None, Some(&eyes));
+        let library = Library::with([of(Kind::ImageShift), of(Kind::EyeYaw)].concat(), true);
+        let [right, left, yaw] = &library.blocks[..] else { panic!("two images and one turn") };
+        assert!(right.excludes(left) && !right.excludes(yaw));
+        let both = (right.log_prior.exp() + left.log_prior.exp()).ln();
+        assert!((both - yaw.log_prior).abs() < 1e-9, "{both} {}", yaw.log_prior);
     }
 
     #[test]

@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::field::log_sum;
 use super::naming::{Evidence, Named, parameters};
+use crate::finding::FoundParameter;
 
 /// Shapes of one effect that are so many times less probable do not tell how far its values are off.
 const LEAST_SHAPE: f64 = 0.1;
@@ -85,11 +86,39 @@ impl Evidence<'_> {
                 let covariance = DMatrix::from_fn(values.len(), values.len(), |r, c| {
                     covariance[(r, c)] * typical[r] * typical[c]
                 });
-                for (one, other) in effect.parameters.iter_mut().zip(parameters(shape, &values, &covariance))
-                {
-                    (one.low, one.high) = (one.low.min(other.low), one.high.max(other.high));
-                }
+                widen(&mut effect.parameters, &parameters(shape, &values, &covariance));
             }
         }
+    }
+}
+
+/// To what another shape says of the same parameters. What is constant and what grows have others.
+fn widen(own: &mut [FoundParameter], others: &[FoundParameter]) {
+    for one in own {
+        if let Some(other) = others.iter().find(|other| other.name == one.name) {
+            (one.low, one.high) = (one.low.min(other.low), one.high.max(other.high));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parameter(name: &str, [low, value, high]: [f64; 3]) -> FoundParameter {
+        FoundParameter { name: name.to_owned(), value, low, high, text: None }
+    }
+
+    #[test]
+    fn an_angle_is_not_widened_by_a_time() {
+        let turned = ["rot_x_rad", "rot_y_rad"].map(|name| parameter(name, [-0.01, 0.0, 0.01]));
+        let grown = [
+            parameter("rot_x_rad", [-0.02, 0.0, 0.005]),
+            parameter("time_constant_s", [170.0, 240.0, 339.0]),
+        ];
+        let mut own = turned.to_vec();
+        widen(&mut own, &grown);
+        assert_eq!((own[0].low, own[0].high), (-0.02, 0.01));
+        assert_eq!(own[1], turned[1]);
     }
 }
