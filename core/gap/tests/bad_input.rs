@@ -4,7 +4,7 @@ mod common;
 
 use common::{Plan, elbow_zero, places, poses, touches};
 use plumbline_effects::Measurements;
-use plumbline_gap::{Finding, GapError, Options, Turns, find};
+use plumbline_gap::{Finding, GapError, Options, Turns, Verdict, find};
 use plumbline_model::Unattended;
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
@@ -143,6 +143,18 @@ fn one_outlier_is_set_aside() {
             assert!((floors(&finding) / floors(&clean) - 1.0).abs() < 0.15);
         }
     }
+}
+
+#[test]
+fn what_comes_again_at_every_repeat_is_no_outlier_and_no_all_clear() {
+    let plan = Plan { places: 40, repeats: 4, ..Plan::default() };
+    let mut measurements = touches(&plan, &[], 3);
+    let is_off = |cell: usize| cell % 5 == 0;
+    measurements.rows.iter_mut().filter(|row| is_off(row.cell)).for_each(|row| row.measured[0] += 0.02);
+    let finding = looked_at(&measurements).expect("can be looked at");
+    let outliers = finding.comparison.residuals.iter().filter(|row| row.outlier).count();
+    assert!(outliers * 20 < measurements.rows.len(), "{outliers} of {}", measurements.rows.len());
+    assert!(finding.comparison.is_gap && finding.verdict != Verdict::NoGap, "{}", finding.sentence);
 }
 
 #[test]

@@ -200,6 +200,11 @@ impl Effect {
         self.pullers.get(self.choice())
     }
 
+    /// Whether the joint before its own pulls that along: a cable or a gear of it runs through this one.
+    pub fn is_pulled_by_the_one_before(&self) -> bool {
+        self.puller().zip(self.joint).is_some_and(|(puller, joint)| puller.place + 1 == joint)
+    }
+
     /// How many joints may pull its own along.
     pub(crate) fn puller_count(&self) -> usize {
         self.pullers.len()

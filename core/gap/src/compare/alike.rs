@@ -27,7 +27,7 @@ const PERMUTATIONS: usize = 1999;
 /// What counts, of all kinds of neighbors together.
 const SIGNIFICANT: f64 = 0.002;
 /// Neighbors that have less than this share of the spread in common may have it from the small things that are off in every robot.
-const LEAST_SHARE: f64 = 0.12;
+const LEAST_SHARE: f64 = 0.15;
 /// Residuals beyond this many robust standard deviations count as that far.
 const FAR: f64 = 4.0;
 /// What is said to be alike.

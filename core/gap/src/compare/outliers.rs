@@ -1,5 +1,7 @@
 //! Rows that nothing around them agrees with.
 
+use std::collections::BTreeMap;
+
 use plumbline_effects::measurements::{Measurements, Observation, What};
 
 use super::neighbors::Points;
@@ -48,8 +50,22 @@ pub fn outliers(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> 
         keep_conditions(measurements, residuals, &mut out);
         keep_changes(measurements, what, residuals, &mut out);
     }
+    keep_repeated(measurements, residuals, &mut out);
     keep_sets(measurements, &mut out);
     out
+}
+
+/// What comes again, the same way, whenever a pose is measured is no mishap: a joint that jumps beyond an angle does so each time.
+fn keep_repeated(measurements: &Measurements, residuals: &[Option<Vec<f64>>], out: &mut [bool]) {
+    let mut cells = BTreeMap::<usize, Vec<usize>>::new();
+    for (i, row) in measurements.rows.iter().enumerate() {
+        cells.entry(row.cell).or_default().push(i);
+    }
+    for own in cells.into_values().filter(|own| own.len() > 1) {
+        if own.iter().all(|&i| out[i]) && alike(own.iter().map(|&i| &residuals[i])) {
+            own.iter().for_each(|&i| out[i] = false);
+        }
+    }
 }
 
 /// Where half of a set of what the eyes saw is off, or more of it, the eyes stood otherwise meanwhile: each of its rows is off

@@ -83,7 +83,7 @@ const ONE_LOGGED_EARLY: f64 = 0.002;
 const LOAD_AS_DESCRIBED: f64 = 0.85;
 
 /// A joint that another one pulls along: how probable it is that this is the one before it, whose cable or gear runs through
-/// its own. The others have the rest in common.
+/// its own. The others have the rest in common, and the first joint has none but those.
 const BY_THE_ONE_BEFORE: f64 = 0.7;
 
 /// How probable it is that what is off about eyes is so all the while, where the rows could show one that grows as they warm up:
@@ -220,8 +220,8 @@ impl Library {
             let share = match (effect.kind, effect.shape) {
                 (Kind::GravityBacklash, None) if others > 0 => LOAD_AS_DESCRIBED,
                 (Kind::GravityBacklash, Some(_)) => (1.0 - LOAD_AS_DESCRIBED) / others.max(1) as f64,
-                (Kind::JointCoupling, None) if others > 0 => BY_THE_ONE_BEFORE,
-                (Kind::JointCoupling, Some(_)) => (1.0 - BY_THE_ONE_BEFORE) / others.max(1) as f64,
+                (Kind::JointCoupling, _) if effect.is_pulled_by_the_one_before() => BY_THE_ONE_BEFORE,
+                (Kind::JointCoupling, _) => (1.0 - BY_THE_ONE_BEFORE) / others.max(1) as f64,
                 _ if may_grow && effect.growth().is_none() => CONSTANT / (others + 1 - growing) as f64,
                 _ if may_grow => (1.0 - CONSTANT) / growing as f64,
                 _ => 1.0 / (others + 1) as f64,
@@ -252,6 +252,26 @@ mod tests {
         let (zeros, zero) = (place(Kind::JointZero, true), place(Kind::JointZero, false));
         assert!(zeros.excludes(zero) && zero.excludes(zeros));
         assert!(!zeros.excludes(place(Kind::AxisSkew, false)) && !zero.excludes(place(Kind::AxisSkew, true)));
+    }
+
+    #[test]
+    fn a_joint_is_pulled_along_by_the_one_before_rather_than_by_any_other() {
+        let rig = Rig::built_in("nico").expect("comes along");
+        let arm = Arm::of_rig(&rig, "right_index_tip").expect("an arm");
+        let with_others = |effect: Effect| {
+            let others = (1..arm.len() - 1).map(|other| effect.clone().with_shape(Some(other as f64)));
+            std::iter::once(effect.clone()).chain(others).collect::<Vec<_>>()
+        };
+        let couplings = Effect::sites(Kind::JointCoupling, Some(&arm), None);
+        let library = Library::with(couplings.into_iter().flat_map(with_others).collect(), true);
+        let of_name = |name: usize| {
+            let own = library.blocks.iter().filter(move |block| block.name == name);
+            own.map(|block| block.log_prior.exp()).collect::<Vec<_>>()
+        };
+        let [first, second] = [of_name(0), of_name(1)];
+        let odds = second.iter().sum::<f64>();
+        assert!((second[0] / odds - BY_THE_ONE_BEFORE).abs() < 1e-9, "{second:?}");
+        assert!(first.iter().all(|own| *own < 0.2 * second[0]), "none is before it: {first:?}");
     }
 
     #[test]
