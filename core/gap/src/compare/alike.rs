@@ -30,6 +30,8 @@ const SIGNIFICANT: f64 = 0.002;
 const LEAST_SHARE: f64 = 0.15;
 /// Residuals beyond this many robust standard deviations count as that far.
 const FAR: f64 = 4.0;
+/// Where more than this share of the rows lie on another one, neighbors are what was seen at once, or again, not what lies nearby.
+const MOST_COINCIDE: f64 = 0.1;
 /// What is said to be alike.
 const OF_ALL: &str = "all that was measured";
 
@@ -101,7 +103,7 @@ fn tame(left: &mut [Vec<f64>]) {
 }
 
 /// Probability by chance that neighbors are as alike as they are, of all spaces together, and the share of the spread that they
-/// have in common. `None` where nothing differs.
+/// have in common. `None` where nothing differs, or many rows lie on others.
 fn by_neighbors(
     left: &[Vec<f64>],
     at: &[Vec<f64>],
@@ -109,6 +111,10 @@ fn by_neighbors(
     context: &dyn JobContext,
 ) -> Result<Option<(f64, f64)>, GapError> {
     let near = nearest(at);
+    let coincide = near.iter().enumerate().filter(|(i, near)| near.iter().any(|&j| at[j] == at[*i]));
+    if coincide.count() as f64 > MOST_COINCIDE * at.len() as f64 {
+        return Ok(None);
+    }
     let whole: f64 = left.iter().flatten().map(|value| value * value).sum();
     if whole <= 0.0 {
         return Ok(None);
@@ -204,12 +210,26 @@ mod tests {
     fn a_field_that_winds_through_space_is_found_and_noise_is_not() {
         let mut by_chance = 0;
         for seed in 0..30 {
-            let (p_value, share) = shares(seed, |x, _| 3.0 * (8.0 * x).sin()).expect("they differ");
+            let (p_value, share) = shares(seed, |x, _| 3.0 * (4.0 * x).sin()).expect("they differ");
             assert!(p_value <= SIGNIFICANT && share > LEAST_SHARE, "{p_value} {share}");
             let (p_value, _) = shares(seed, |_, _| 0.0).expect("they differ");
             by_chance += usize::from(p_value <= SIGNIFICANT);
         }
         assert_eq!(by_chance, 0, "two in a thousand");
+    }
+
+    #[test]
+    fn what_was_seen_at_once_has_no_neighbors_in_time() {
+        let mut random = StdRng::seed_from_u64(3);
+        // Three things in each of forty looks, which share what the eyes did then.
+        let mut left: Vec<Vec<f64>> = vec![];
+        for _ in 0..40 {
+            let shared: f64 = random.random_range(-1.0..1.0);
+            left.extend((0..3).map(|_| vec![shared]));
+        }
+        tame(&mut left);
+        let at: Vec<Vec<f64>> = (0..120).map(|i| vec![f64::from(i / 3)]).collect();
+        assert_eq!(by_neighbors(&left, &at, 1, &Unattended).expect("nobody cancels"), None);
     }
 
     #[test]
