@@ -24,6 +24,11 @@ const NEARLY_CLOSED: f64 = 0.8;
 const ALIKE: f64 = 0.15;
 /// Where the noise of neighbors or of an instrument was found to be so many times as large, no more was tried.
 const LARGEST_NOISE: f64 = 3.9;
+/// Rows of less weight than this the search does not believe; more than this share of them is more than mishaps …
+pub(crate) const NOT_BELIEVED: f64 = 0.1;
+const MANY: f64 = 0.05;
+/// … where all rows together lie this far beyond the noise of repeats, standard deviations of one measurement.
+const FAR_SIGMAS: f64 = 1.0;
 /// Repeats that still depend on something by less than this (units of what is left) are noise enough …
 const LEAST_STRUCTURE: f64 = 0.4;
 /// … and by less than this where that is how far joints stop short of their goals: a servo goes on by as much while the finger
@@ -184,6 +189,18 @@ pub(crate) fn still_alike(
         misled(found, 0.95);
     }
     Ok(())
+}
+
+/// Where repeats tell the noise, what lies far beyond it is no all-clear for the rows that the search does not believe: a row that is
+/// off again at every repeat is no mishap.
+pub(crate) fn no_all_clear_without_them(found: &mut Found, compared: &Compared) {
+    let dropped = found.weights.iter().filter(|weight| **weight < NOT_BELIEVED).count();
+    let are_many = dropped as f64 > MANY * found.weights.len() as f64;
+    let told = &compared.comparison;
+    let is_far = told.p_value < search::VETO_P && told.size_sigmas > FAR_SIGMAS;
+    if found.verdict == Verdict::NoGap && told.floor_from_repeats && are_many && is_far {
+        misled(found, 0.95);
+    }
 }
 
 /// What is left depends on this first of all.

@@ -106,6 +106,7 @@ fn found_in(
     }
     flag_outliers(&mut compared, &kept, &found);
     bounds::still_structured(&mut found, &used, &compared);
+    bounds::no_all_clear_without_them(&mut found, &compared);
     bounds::still_alike(&mut found, &used, options.seed, context)?;
     bounds::bound_by_own_rows(&mut found, &used);
     bounds::bound_by_held_out(&mut found, &used, &shown, &mut compared.warnings);
@@ -197,7 +198,7 @@ fn no_help(found: &Found, shown: &Shown, options: &Options) -> Option<String> {
 /// Rows that the search does not believe are outliers too.
 fn flag_outliers(compared: &mut Compared, kept: &[usize], found: &Found) {
     for (&i, weight) in kept.iter().zip(&found.weights) {
-        if *weight < 0.1 {
+        if *weight < bounds::NOT_BELIEVED {
             compared.comparison.residuals[i].outlier = true;
         }
     }

@@ -4,7 +4,7 @@ mod common;
 
 use common::{Plan, elbow_zero, places, poses, touches};
 use plumbline_effects::Measurements;
-use plumbline_gap::{Finding, GapError, Options, Turns, find};
+use plumbline_gap::{Finding, GapError, Options, Turns, Verdict, find};
 use plumbline_model::Unattended;
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
@@ -146,7 +146,7 @@ fn one_outlier_is_set_aside() {
 }
 
 #[test]
-fn what_comes_again_at_every_repeat_is_no_outlier() {
+fn what_comes_again_at_every_repeat_is_no_outlier_and_no_all_clear() {
     let plan = Plan { places: 40, repeats: 4, ..Plan::default() };
     let mut measurements = touches(&plan, &[], 3);
     let is_off = |cell: usize| cell % 10 == 0;
@@ -154,7 +154,7 @@ fn what_comes_again_at_every_repeat_is_no_outlier() {
     let finding = looked_at(&measurements).expect("can be looked at");
     let set_aside = finding.warnings.iter().find(|words| words.contains("far from all others"));
     assert_eq!(set_aside, None);
-    assert!(finding.comparison.is_gap, "{}", finding.sentence);
+    assert!(finding.comparison.is_gap && finding.verdict != Verdict::NoGap, "{}", finding.sentence);
 }
 
 #[test]

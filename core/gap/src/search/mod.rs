@@ -51,7 +51,7 @@ use look::Look;
 pub(crate) use naming::{BEYOND_PLAUSIBLE, BOUND, MOST_DIRT};
 use refit::refit;
 pub(crate) use stated::still_right;
-pub(crate) use unknown::RIVAL_P;
+pub(crate) use unknown::{RIVAL_P, VETO_P};
 
 /// Times that the model is linearized anew, at the effects found before.
 const ROUNDS: usize = 3;

@@ -21,7 +21,7 @@ const RIVAL_CLOSES: f64 = 0.2;
 /// And only where the library leaves more than noise and dirt would, with this probability.
 pub(crate) const RIVAL_P: f64 = 0.02;
 /// Lack of fit that vetoes names: probability by chance, and how much larger than noise the rest is.
-pub(super) const VETO_P: f64 = 1e-4;
+pub(crate) const VETO_P: f64 = 1e-4;
 const VETO_SIZE: f64 = 0.45;
 /// Formulas are right to this share of what they explain: what is left below it is theirs, as for rivals.
 const FORMULA_SHARE: f64 = RIVAL_SHARE;
