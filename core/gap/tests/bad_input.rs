@@ -149,7 +149,7 @@ fn one_outlier_is_set_aside() {
 fn what_comes_again_at_every_repeat_is_no_outlier_and_no_all_clear() {
     let plan = Plan { places: 40, repeats: 4, ..Plan::default() };
     let mut measurements = touches(&plan, &[], 3);
-    let is_off = |cell: usize| cell % 10 == 0;
+    let is_off = |cell: usize| cell.is_multiple_of(10);
     measurements.rows.iter_mut().filter(|row| is_off(row.cell)).for_each(|row| row.measured[0] += 0.02);
     let finding = looked_at(&measurements).expect("can be looked at");
     let set_aside = finding.warnings.iter().find(|words| words.contains("far from all others"));
