@@ -1,7 +1,7 @@
 //! What may not be a name, whatever speaks for it on the rows that it was found in: what repeats contradict,
 //! what leaves most of the gap open, and what does not hold on rows that were not used.
 
-use plumbline_effects::{Assumed, Measurements};
+use plumbline_effects::{Assumed, Measurements, Present};
 
 use plumbline_model::JobContext;
 
@@ -148,6 +148,19 @@ pub(crate) fn bound_by_own_rows(found: &mut Found, used: &Measurements) {
     let above = if is_dirt { 1.0_f64.hypot(search::MOST_DIRT) } else { ABOVE };
     if square > above * above * count {
         misled(found, 0.5);
+    }
+}
+
+/// What is larger than any robot can have of it is something else, which it follows.
+pub(crate) fn bound_by_what_can_be(found: &mut Found) {
+    let is_beyond = |present: &Present| {
+        let parameters = present.effect.parameters();
+        let mut values = present.values.iter().zip(parameters);
+        present.effect.is_bounded() && values.any(|(value, one)| value.abs() > search::BOUND * one.typical)
+    };
+    let named = matches!(found.verdict, Verdict::Named | Verdict::Class);
+    if named && found.assumed.effects.iter().any(is_beyond) {
+        misled(found, 0.95);
     }
 }
 

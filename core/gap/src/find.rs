@@ -109,6 +109,7 @@ fn found_in(
     bounds::no_all_clear_without_them(&mut found, &compared);
     bounds::still_alike(&mut found, &used, options.seed, context)?;
     bounds::bound_by_own_rows(&mut found, &used);
+    bounds::bound_by_what_can_be(&mut found);
     bounds::bound_by_held_out(&mut found, &used, &shown, &mut compared.warnings);
     let partial = offer::offer(&mut found, &mut shown, &mut compared.warnings);
     if let Some(words) = no_help(&found, &shown, options) {

@@ -217,3 +217,20 @@ fn what_closes_a_part_beside_something_unknown_can_be_added_as_a_part() {
         );
     }
 }
+
+#[test]
+fn every_link_wrong_by_centimeters_is_no_name() {
+    let plan = Plan { places: 60, heights: vec![0.0, 0.06], ..Plan::default() };
+    let every = |by_m: f64| {
+        let some = touches(&plan, &[], 1);
+        let signs = [1.0, -1.0, 1.0, -1.0, 1.0, -1.0].map(|sign: f64| sign * by_m);
+        let sites = present(&some, "link-length", "", &[]).effect.parameters().len();
+        let hidden = present(&some, "link-length", "", &signs[..sites]);
+        looked_at(&touches(&plan, &[hidden], 3), false)
+    };
+    let plausible = every(0.008);
+    assert_ne!(plausible.verdict, Verdict::NotInLibrary, "{}", plausible.sentence);
+    let far = every(0.04);
+    assert_eq!(far.verdict, Verdict::NotInLibrary, "{}", far.sentence);
+    assert!(far.effects.iter().all(|effect| effect.probability < 0.5), "{}", far.sentence);
+}

@@ -190,6 +190,12 @@ impl Effect {
         !self.members.is_empty()
     }
 
+    /// Whether no robot has more of it than is plausible, so that a larger one is something else that it follows: parts that
+    /// are made like others are not wrong at every site as one is by mistake. (Zeros may be off by a whole tooth, and at every joint.)
+    pub fn is_bounded(&self) -> bool {
+        self.is_of_every_site() && self.kind != Kind::JointZero
+    }
+
     /// Which of the things that its kind may be, from 0 on.
     pub(super) fn choice(&self) -> usize {
         self.shape.map_or(0, |shape| shape as usize)

@@ -115,7 +115,8 @@ fn columns(rows: &[Repeat], joint: usize, spread: &Spread) -> Option<Vec<DVector
     (!all.is_empty()).then_some(all)
 }
 
-fn column(
+/// What a row may depend on, as [`columns`] has it. `least`: share of its variance that repeats have to differ in.
+pub(super) fn column(
     rows: &[Repeat],
     spread: &Spread,
     least: f64,
@@ -144,7 +145,7 @@ fn column(
 }
 
 /// What these columns leave.
-fn rest_of(off: &DVector<f64>, columns: &[&DVector<f64>]) -> Option<DVector<f64>> {
+pub(super) fn rest_of(off: &DVector<f64>, columns: &[&DVector<f64>]) -> Option<DVector<f64>> {
     let design = DMatrix::from_fn(off.len(), columns.len(), |r, c| columns[c][r]);
     let normal = design.tr_mul(&design) + DMatrix::identity(columns.len(), columns.len()) * RIDGE;
     Some(off - &design * Cholesky::new(normal)?.solve(&design.tr_mul(off)))

@@ -15,6 +15,7 @@ mod oddities;
 mod outliers;
 mod poses;
 mod sets;
+mod slips;
 mod spread;
 mod structure;
 mod sway;

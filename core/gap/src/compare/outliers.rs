@@ -19,6 +19,10 @@ const A_CONDITION: usize = 5;
 
 /// What a change does is the same in all rows that it changed to this share: one that turns a screen moves its sides otherwise.
 const NEAR: f64 = 0.7;
+/// So large a share of a session's rows is more than a mishap when it begins at one moment …
+const MANY: f64 = 0.1;
+/// … and so few before it are off.
+const HARDLY_ANY: f64 = 0.1;
 
 /// Per row, whether it is an outlier.
 pub fn outliers(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> Vec<bool> {
@@ -49,6 +53,7 @@ pub fn outliers(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> 
         }
         keep_conditions(measurements, residuals, &mut out);
         keep_changes(measurements, what, residuals, &mut out);
+        keep_what_began(measurements, what, &mut out);
     }
     keep_repeated(measurements, residuals, &mut out);
     keep_sets(measurements, &mut out);
@@ -145,6 +150,33 @@ fn keep_changes(measurements: &Measurements, what: What, residuals: &[Option<Vec
                 for i in near_their_median(after, residuals, out) {
                     out[i] = false;
                 }
+            }
+            own.reverse();
+        }
+    }
+}
+
+/// Where from some row of a session on, or up to one, half or more are off, many, and hardly any of the others, something
+/// changed there, whichever way each of them is off: a horn that slipped moves the flange here this way and there that way.
+fn keep_what_began(measurements: &Measurements, what: What, out: &mut [bool]) {
+    let sessions = measurements.rows.iter().map(|row| row.session).max().map_or(0, |last| last + 1);
+    for session in 0..sessions {
+        let is_own = |row: &Observation| row.session == session && row.what == what;
+        let mut own: Vec<usize> = (0..out.len()).filter(|&i| is_own(&measurements.rows[i])).collect();
+        for _ in 0..2 {
+            // From there on those that are off are the most more than those that are not.
+            let (mut more, mut most, mut first) = (0_i64, 0, own.len());
+            for at in (0..own.len()).rev() {
+                more += if out[own[at]] { 1 } else { -1 };
+                if more > most {
+                    (most, first) = (more, at);
+                }
+            }
+            let (before, after) = own.split_at(first);
+            let off = |rows: &[usize]| rows.iter().filter(|&&i| out[i]).count() as f64;
+            let many = (A_CONDITION as f64).max(MANY * own.len() as f64);
+            if off(after) >= many && off(before) <= HARDLY_ANY * before.len() as f64 && !before.is_empty() {
+                after.iter().for_each(|&i| out[i] = false);
             }
             own.reverse();
         }

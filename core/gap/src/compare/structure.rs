@@ -8,6 +8,7 @@
 use nalgebra::DMatrix;
 
 use super::levers::{by_lag, by_levers};
+use super::slips::by_slips;
 use super::spread::{SIGNIFICANT, Spread};
 use crate::statistics::robust_sd;
 
@@ -82,8 +83,10 @@ pub fn structure(rows: &[Repeat], free: f64, when: &str, joints: &[String]) -> O
     let tried = covariates(rows, when, joints);
     let fits = tried.len() + 1 + if has_levers { joints.len() } else { 0 };
     let by_levers = if has_levers { by_levers(rows, &spread, joints, fits) } else { None };
+    let by_slips = if has_levers { by_slips(rows, &spread, joints.len(), fits, when) } else { None };
     let by_lag = by_lag(rows, &spread, fits);
-    let mut best = by_levers.into_iter().chain(by_lag).min_by(|a, b| a.p_value.total_cmp(&b.p_value));
+    let others = by_levers.into_iter().chain(by_slips).chain(by_lag);
+    let mut best = others.min_by(|a, b| a.p_value.total_cmp(&b.p_value));
     for (on, columns) in tried {
         let Some(design) = within_cells(rows, &columns) else { continue };
         let Some(left) = spread.fitted_by(&design) else { continue };
@@ -165,10 +168,6 @@ fn jumps(rows: &[Repeat]) -> Vec<Vec<Vec<f64>>> {
         places.iter().map(|at| (at[axis] - mean) / square.sqrt().max(1e-12)).collect()
     };
     let axes = [vec![1.0; rows.len()], along(0), along(1)];
-    let mut moments: Vec<f64> = rows.iter().map(|row| row.when).collect();
-    moments.sort_by(f64::total_cmp);
-    let tried = MOST_MOMENTS.min(rows.len() / ROWS_PER_TURN);
-    let moment = |k: usize| moments[(k + 1) * rows.len() / (tried + 1)];
     let jump = |from: f64| {
         let of = |axis: &Vec<f64>| {
             let after = rows.iter().zip(axis);
@@ -176,7 +175,15 @@ fn jumps(rows: &[Repeat]) -> Vec<Vec<Vec<f64>>> {
         };
         axes.iter().map(of).collect()
     };
-    (0..tried).map(|k| jump(moment(k))).collect()
+    moments(rows).into_iter().map(jump).collect()
+}
+
+/// Moments at which something may have jumped, as many rows between any two.
+pub(super) fn moments(rows: &[Repeat]) -> Vec<f64> {
+    let mut all: Vec<f64> = rows.iter().map(|row| row.when).collect();
+    all.sort_by(f64::total_cmp);
+    let tried = MOST_MOMENTS.min(rows.len() / ROWS_PER_TURN);
+    (0..tried).map(|k| all[(k + 1) * rows.len() / (tried + 1)]).collect()
 }
 
 /// Columns less their means within cells, of unit length; `None` where repeats hardly differ in them.
