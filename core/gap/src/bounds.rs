@@ -151,7 +151,8 @@ pub(crate) fn bound_by_own_rows(found: &mut Found, used: &Measurements) {
     }
 }
 
-/// What is larger than any robot can have of it is something else, which it follows.
+/// What is larger than any robot can have of it is something else, which it follows. (Where everything is said to be a little off,
+/// no name is said to be all of it.)
 pub(crate) fn bound_by_what_can_be(found: &mut Found) {
     let is_beyond = |present: &Present| {
         let parameters = present.effect.parameters();
@@ -159,7 +160,7 @@ pub(crate) fn bound_by_what_can_be(found: &mut Found) {
         present.effect.is_bounded() && values.any(|(value, one)| value.abs() > search::BOUND * one.typical)
     };
     let named = matches!(found.verdict, Verdict::Named | Verdict::Class);
-    if named && found.assumed.effects.iter().any(is_beyond) {
+    if named && found.many.is_none() && found.assumed.effects.iter().any(is_beyond) {
         misled(found, 0.95);
     }
 }
