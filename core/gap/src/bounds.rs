@@ -1,6 +1,9 @@
 //! What may not be a name, whatever speaks for it on the rows that it was found in: what repeats contradict,
 //! what leaves most of the gap open, and what does not hold on rows that were not used.
 
+use std::collections::BTreeMap;
+
+use plumbline_effects::measurements::What;
 use plumbline_effects::{Assumed, Measurements, Present};
 
 use plumbline_model::JobContext;
@@ -26,7 +29,7 @@ const ALIKE: f64 = 0.15;
 const LARGEST_NOISE: f64 = 3.9;
 /// Rows of less weight than this the search does not believe; more than this share of them is more than mishaps …
 pub(crate) const NOT_BELIEVED: f64 = 0.1;
-const MANY: f64 = 0.05;
+pub(crate) const MANY: f64 = 0.05;
 /// … where all rows together lie this far beyond the noise of repeats, standard deviations of one measurement.
 const FAR_SIGMAS: f64 = 1.0;
 /// Repeats that still depend on something by less than this (units of what is left) are noise enough …
@@ -207,8 +210,13 @@ pub(crate) fn still_alike(
 
 /// Where repeats tell the noise, what lies far beyond it is no all-clear for the rows that the search does not believe: a row that is
 /// off again at every repeat is no mishap.
-pub(crate) fn no_all_clear_without_them(found: &mut Found, compared: &Compared) {
-    let dropped = found.weights.iter().filter(|weight| **weight < NOT_BELIEVED).count();
+pub(crate) fn no_all_clear_without_them(found: &mut Found, used: &Measurements, compared: &Compared) {
+    let mut cells = BTreeMap::<(What, usize), Vec<bool>>::new();
+    for (row, weight) in used.rows.iter().zip(&found.weights) {
+        cells.entry((row.what, row.cell)).or_default().push(*weight < NOT_BELIEVED);
+    }
+    let again = cells.values().filter(|own| own.len() > 1 && own.iter().all(|dropped| *dropped));
+    let dropped: usize = again.map(Vec::len).sum();
     let are_many = dropped as f64 > MANY * found.weights.len() as f64;
     let told = &compared.comparison;
     let is_far = told.p_value < search::VETO_P && told.size_sigmas > FAR_SIGMAS;

@@ -106,7 +106,7 @@ fn found_in(
     }
     flag_outliers(&mut compared, &kept, &found);
     bounds::still_structured(&mut found, &used, &compared);
-    bounds::no_all_clear_without_them(&mut found, &compared);
+    bounds::no_all_clear_without_them(&mut found, &used, &compared);
     bounds::still_alike(&mut found, &used, options.seed, context)?;
     bounds::bound_by_own_rows(&mut found, &used);
     bounds::bound_by_what_can_be(&mut found);
@@ -198,10 +198,18 @@ fn no_help(found: &Found, shown: &Shown, options: &Options) -> Option<String> {
 
 /// Rows that the search does not believe are outliers too.
 fn flag_outliers(compared: &mut Compared, kept: &[usize], found: &Found) {
+    let mut dropped = 0;
     for (&i, weight) in kept.iter().zip(&found.weights) {
         if *weight < bounds::NOT_BELIEVED {
             compared.comparison.residuals[i].outlier = true;
+            dropped += 1;
         }
+    }
+    if dropped as f64 > bounds::MANY * kept.len() as f64 {
+        compared.warnings.push(format!(
+            "{dropped} of {} rows fit nothing that was found and hardly counted: look at them first (gray on the map)",
+            kept.len()
+        ));
     }
 }
 

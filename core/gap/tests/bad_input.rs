@@ -158,6 +158,19 @@ fn what_comes_again_at_every_repeat_is_no_outlier_and_no_all_clear() {
 }
 
 #[test]
+fn one_pose_that_is_off_without_having_been_left_is_set_aside() {
+    // Three samples in a row, the marker flipped or an angle mistyped: nothing came again.
+    let mut measurements = touches(&Plan::default(), &[], 3);
+    let is_bad = |cell: usize| cell == 20;
+    measurements.rows.iter_mut().filter(|row| is_bad(row.cell)).for_each(|row| row.measured[0] += 0.03);
+    let finding = looked_at(&measurements).expect("can be looked at");
+    let rows = measurements.rows.iter().zip(&finding.comparison.residuals);
+    assert!(rows.filter(|(row, _)| is_bad(row.cell)).all(|(_, residual)| residual.outlier));
+    assert!(finding.warnings.iter().any(|words| words.contains("3 rows") && words.contains("not used")));
+    assert_eq!(finding.verdict, Verdict::NoGap, "{}", finding.sentence);
+}
+
+#[test]
 fn a_fifth_of_outliers_does_not_turn_the_frame() {
     for plan in [one_by_one(150), Plan::default()] {
         let mut measurements = touches(&plan, &[], 4);

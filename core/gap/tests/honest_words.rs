@@ -230,7 +230,7 @@ fn every_link_wrong_by_centimeters_is_no_name() {
     };
     let plausible = every(0.008);
     assert_ne!(plausible.verdict, Verdict::NotInLibrary, "{}", plausible.sentence);
-    let far = every(0.04);
+    let far = every(0.018);
     assert_eq!(far.verdict, Verdict::NotInLibrary, "{}", far.sentence);
     assert!(far.effects.iter().all(|effect| effect.probability < 0.5), "{}", far.sentence);
 }

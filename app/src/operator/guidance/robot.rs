@@ -284,11 +284,11 @@ pub(super) fn mount(view: &View) -> Guidance {
         let delete = Action::Mount(MountAction::DeleteColder);
         return say(said).warn().then(format!("Delete {colder} of colder eyes"), delete);
     }
-    if let Some(why) = &mount.proposal_stale {
+    if let Some(why) = mount.proposal_stale.as_ref().filter(|_| mount.views.len() >= MountView::LEAST_VIEWS) {
         let views = format::count(mount.views.len(), "view");
         return say(why.clone()).then(format!("Solve {views} again"), Action::Mount(MountAction::Solve));
     }
-    if let Some(proposal) = &mount.proposal {
+    if let Some(proposal) = mount.proposal.as_ref().filter(|_| mount.proposal_stale.is_none()) {
         let (good, verdict) = mount::verdict(proposal);
         let said = say(format!("Solved. {verdict}"));
         let said = if good { said } else { said.warn() };

@@ -48,7 +48,7 @@ pub fn still_cold(eyes: &EyesView) -> String {
     let wait_min = eyes.health.cold_for_min.map(|wait_min| wait_min.ceil() as usize);
     wait_min.map_or_else(String::new, |wait_min| {
         format!(
-            " The eyes are still cold and turn while they warm up: what is taken now fits until then, in {}.",
+            " The eyes are still cold and turn while they warm up: what is taken now does not fit later. Wait {} if you can.",
             counted(wait_min, "minute")
         )
     })

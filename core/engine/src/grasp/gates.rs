@@ -211,7 +211,9 @@ fn fresh(pair_age_s: Option<f64>) -> Gate {
         ),
         Some(age_s) if age_s >= OLD_PAIR_S => doubtful(
             Need::Eyes,
-            format!("The newest picture is {age_s:.1} s old: this computer is busy, and pictures come late."),
+            format!(
+                "The newest picture is {age_s:.1} s old: pictures come late (a busy computer, or slow eyes)."
+            ),
         ),
         Some(_) => open(Need::Eyes, "Both eyes deliver."),
         None => closed(Need::Eyes, "No picture came yet: wait a moment."),

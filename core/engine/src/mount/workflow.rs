@@ -405,7 +405,8 @@ impl Workflow for MountWorkflow {
         self.solving.take_if(|solving| *solving == id);
         self.is_known |= !matches!(result, MountResult::Solved(_));
         match result {
-            MountResult::Solved(mount) => self.proposal = Some(mount),
+            // Of no views nothing is proposed: all may have been deleted meanwhile.
+            MountResult::Solved(mount) => self.proposal = Some(mount).filter(|_| !self.views.is_empty()),
             MountResult::Saved(mount) => {
                 self.proposal = self.proposal.take().filter(|proposal| !Arc::ptr_eq(proposal, &mount));
                 self.in_use = Some(mount);

@@ -5,7 +5,7 @@
 //! test in each logged quantity alone does not see what winds through space, or swings in less time than a few turns of a
 //! session. The sum over rows of the product with their nearest ones (Moran 1950), against permutations inside of sessions.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use plumbline_effects::measurements::{Measurements, Observation, What};
 use plumbline_model::JobContext;
@@ -20,6 +20,8 @@ use crate::statistics::{median, robust_sd};
 
 /// Fewer rows than this say nothing.
 const FEWEST: usize = 30;
+/// So many repeats tell the noise of a kind of rows, whatever its neighbors do.
+const ENOUGH_REPEATS: usize = 20;
 /// Neighbors of each row.
 const NEAREST: usize = 3;
 /// Permutations: the smallest probability that they can show is one over one more.
@@ -44,7 +46,8 @@ const SPACES: [Space; 3] = [
     ("time", |row| Some(vec![row.t_secs?])),
 ];
 
-/// The strongest likeness of neighbors beyond doubt, of rows of any kind that were measured once and not watched.
+/// The strongest likeness of neighbors beyond doubt, of rows of any kind that were measured once and not watched. One row of each
+/// moment or pose counts: what several markers, or things seen at once, have in common is how the arm stood, or the head.
 ///
 /// # Errors
 /// Cancelled.
@@ -56,37 +59,59 @@ pub fn alike(
 ) -> Result<Option<Structure>, GapError> {
     let mut best: Option<Structure> = None;
     for what in What::ALL {
-        let mut sessions = BTreeMap::<usize, BTreeMap<usize, (&Observation, &Vec<f64>)>>::new();
-        for (row, residual) in measurements.rows.iter().zip(residuals) {
-            if row.what == what
-                && row.stand.is_none()
-                && let Some(residual) = residual
-            {
-                // Of the few that were measured twice the first one counts: they are alike anyway.
-                sessions.entry(row.session).or_default().entry(row.cell).or_insert((row, residual));
-            }
-        }
-        let Some(cells) = sessions.into_values().max_by_key(BTreeMap::len) else { continue };
-        if cells.len() < FEWEST {
+        let own = measurements.rows.iter().zip(residuals);
+        let own: Vec<(&Observation, &Vec<f64>)> = own
+            .filter(|(row, _)| row.what == what && row.stand.is_none())
+            .filter_map(|(row, residual)| Some((row, residual.as_ref()?)))
+            .collect();
+        let cells: BTreeSet<usize> = own.iter().map(|(row, _)| row.cell).collect();
+        if own.len() - cells.len() >= ENOUGH_REPEATS {
             continue;
         }
-        let mut left: Vec<Vec<f64>> = cells.values().map(|(_, residual)| (*residual).clone()).collect();
-        tame(&mut left);
-        for (name, coordinates) in SPACES {
-            let at: Option<Vec<Vec<f64>>> = cells.values().map(|(row, _)| coordinates(row)).collect();
-            let Some(at) = at else { continue };
-            let found = by_neighbors(&left, &at, seed, context)?;
-            if let Some((p_value, share)) = found
-                && p_value <= SIGNIFICANT
-                && share >= LEAST_SHARE
-                && best.as_ref().is_none_or(|best| share > 1.0 - best.left[0])
-            {
-                let left = vec![1.0 - share.min(1.0 - 1e-6); what.len()];
-                best = Some(Structure { of: OF_ALL, ..Structure::new(name.to_owned(), p_value, left) });
+        let mut sessions = BTreeMap::<usize, BTreeMap<Moment, (&Observation, &Vec<f64>)>>::new();
+        let mut seen = BTreeSet::new();
+        for (row, residual) in own {
+            // Of the few that were measured twice the first one counts: they are alike anyway.
+            if seen.insert((row.session, row.cell)) {
+                let moments = sessions.entry(row.session).or_default();
+                moments.entry(moment(row)).or_insert((row, residual));
+            }
+        }
+        let sessions: Vec<_> = sessions.into_values().filter(|rows| rows.len() >= FEWEST).collect();
+        let tried = sessions.len() as f64;
+        for rows in sessions {
+            let mut left: Vec<Vec<f64>> = rows.values().map(|(_, residual)| (*residual).clone()).collect();
+            tame(&mut left);
+            for (name, coordinates) in SPACES {
+                let at: Option<Vec<Vec<f64>>> = rows.values().map(|(row, _)| coordinates(row)).collect();
+                let Some(at) = at else { continue };
+                let Some((p_value, share)) = by_neighbors(&left, &at, seed, context)? else { continue };
+                let p_value = (tried * p_value).min(1.0);
+                let is_more = best.as_ref().is_none_or(|best| share > 1.0 - best.left[0]);
+                if p_value <= SIGNIFICANT && share >= LEAST_SHARE && is_more {
+                    let left = vec![1.0 - share.min(1.0 - 1e-6); what.len()];
+                    best = Some(Structure { of: OF_ALL, ..Structure::new(name.to_owned(), p_value, left) });
+                }
             }
         }
     }
     Ok(best)
+}
+
+/// What was measured at one moment, or in one pose: where neither is known, each cell by itself.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+enum Moment {
+    Pose(usize),
+    Milliseconds(i64),
+    Cell(usize),
+}
+
+fn moment(row: &Observation) -> Moment {
+    match (row.pose, row.t_secs) {
+        (Some(pose), _) => Moment::Pose(pose),
+        (None, Some(t_secs)) => Moment::Milliseconds((t_secs * 1e3).round() as i64),
+        (None, None) => Moment::Cell(row.cell),
+    }
 }
 
 /// In units of their spread, about their middle; what is far out counts as less far, what does not differ as nothing.
@@ -231,6 +256,19 @@ mod tests {
         tame(&mut left);
         let at: Vec<Vec<f64>> = (0..120).map(|i| vec![f64::from(i / 3)]).collect();
         assert_eq!(by_neighbors(&left, &at, 1, &Unattended).expect("nobody cancels"), None);
+    }
+
+    #[test]
+    fn rows_of_one_pose_or_moment_are_one() {
+        use plumbline_effects::measurements::Observation;
+
+        let row = |pose: Option<usize>, t_secs: Option<f64>, cell: usize| {
+            moment(&Observation { pose, t_secs, cell, ..Observation::imagined(What::Pose) })
+        };
+        assert!(row(Some(2), Some(1.0), 7) == row(Some(2), Some(1.2), 8), "markers of one pose");
+        assert!(row(None, Some(1.0), 7) == row(None, Some(1.0002), 8), "things seen at once");
+        assert!(row(None, Some(1.0), 7) != row(None, Some(1.1), 7));
+        assert!(row(None, None, 7) != row(None, None, 8));
     }
 
     #[test]

@@ -23,6 +23,10 @@ const NEAR: f64 = 0.7;
 const MANY: f64 = 0.1;
 /// … and so few before it are off.
 const HARDLY_ANY: f64 = 0.1;
+/// What lies so many times as far off as the middle one of those that a change moved is a mishap all the same.
+const MUCH_FARTHER: f64 = 4.0;
+/// So many poses are no mishap of one.
+const SEVERAL: usize = 3;
 
 /// Per row, whether it is an outlier.
 pub fn outliers(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> Vec<bool> {
@@ -53,7 +57,7 @@ pub fn outliers(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> 
         }
         keep_conditions(measurements, residuals, &mut out);
         keep_changes(measurements, what, residuals, &mut out);
-        keep_what_began(measurements, what, &mut out);
+        keep_what_began(measurements, what, residuals, &mut out);
     }
     keep_repeated(measurements, residuals, &mut out);
     keep_sets(measurements, &mut out);
@@ -61,13 +65,20 @@ pub fn outliers(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> 
 }
 
 /// What comes again, the same way, whenever a pose is measured is no mishap: a joint that jumps beyond an angle does so each time.
+/// Where the arm did not move between the repeats, a mishap of that pose comes again as well; several poses have none.
 fn keep_repeated(measurements: &Measurements, residuals: &[Option<Vec<f64>>], out: &mut [bool]) {
-    let mut cells = BTreeMap::<usize, Vec<usize>>::new();
+    let mut cells = BTreeMap::<(What, usize), Vec<usize>>::new();
     for (i, row) in measurements.rows.iter().enumerate() {
-        cells.entry(row.cell).or_default().push(i);
+        cells.entry((row.what, row.cell)).or_default().push(i);
     }
-    for own in cells.into_values().filter(|own| own.len() > 1) {
-        if own.iter().all(|&i| out[i]) && alike(own.iter().map(|&i| &residuals[i])) {
+    let comes_again = |own: &Vec<usize>| {
+        own.len() > 1 && own.iter().all(|&i| out[i]) && alike(own.iter().map(|&i| &residuals[i]))
+    };
+    let again: Vec<Vec<usize>> = cells.into_values().filter(comes_again).collect();
+    let are_several = again.len() >= SEVERAL;
+    for own in again {
+        let is_apart = own.windows(2).any(|pair| pair[1] - pair[0] > 1);
+        if is_apart || are_several {
             own.iter().for_each(|&i| out[i] = false);
         }
     }
@@ -158,7 +169,15 @@ fn keep_changes(measurements: &Measurements, what: What, residuals: &[Option<Vec
 
 /// Where from some row of a session on, or up to one, half or more are off, many, and hardly any of the others, something
 /// changed there, whichever way each of them is off: a horn that slipped moves the flange here this way and there that way.
-fn keep_what_began(measurements: &Measurements, what: What, out: &mut [bool]) {
+fn keep_what_began(
+    measurements: &Measurements,
+    what: What,
+    residuals: &[Option<Vec<f64>>],
+    out: &mut [bool],
+) {
+    let how_far = |i: usize| {
+        residuals[i].as_ref().map_or(0.0, |off| off.iter().map(|value| value * value).sum::<f64>().sqrt())
+    };
     let sessions = measurements.rows.iter().map(|row| row.session).max().map_or(0, |last| last + 1);
     for session in 0..sessions {
         let is_own = |row: &Observation| row.session == session && row.what == what;
@@ -176,7 +195,8 @@ fn keep_what_began(measurements: &Measurements, what: What, out: &mut [bool]) {
             let off = |rows: &[usize]| rows.iter().filter(|&&i| out[i]).count() as f64;
             let many = (A_CONDITION as f64).max(MANY * own.len() as f64);
             if off(after) >= many && off(before) <= HARDLY_ANY * before.len() as f64 && !before.is_empty() {
-                after.iter().for_each(|&i| out[i] = false);
+                let usual = median(after.iter().filter(|&&i| out[i]).map(|&i| how_far(i))).unwrap_or(0.0);
+                after.iter().for_each(|&i| out[i] &= how_far(i) > MUCH_FARTHER * usual);
             }
             own.reverse();
         }
@@ -201,8 +221,24 @@ fn near_their_median(rows: &[usize], residuals: &[Option<Vec<f64>>], out: &[bool
 fn alike<'a>(residuals: impl Iterator<Item = &'a Option<Vec<f64>>>) -> bool {
     let known: Vec<&Vec<f64>> = residuals.flatten().collect();
     let Some(size) = known.first().map(|first| first.len()) else { return false };
+    if known.iter().any(|residual| residual.len() != size) {
+        return false;
+    }
     let length: f64 = known.iter().map(|r| r.iter().map(|v| v * v).sum::<f64>().sqrt()).sum();
     let together: f64 =
         (0..size).map(|c| known.iter().map(|r| r[c]).sum::<f64>()).map(|sum| sum * sum).sum::<f64>().sqrt();
     together > 0.7 * length
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_of_other_widths_are_not_alike() {
+        let pose = Some(vec![0.02, 0.0, 0.0]);
+        let oriented = Some(vec![0.02, 0.0, 0.0, 0.1, 0.0, 0.0]);
+        assert!(alike([&pose, &pose].into_iter()));
+        assert!(!alike([&pose, &oriented].into_iter()) && !alike([&oriented, &pose].into_iter()));
+    }
 }
