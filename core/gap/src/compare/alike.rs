@@ -77,16 +77,14 @@ pub fn alike(
                 moments.entry(moment(row)).or_insert((row, residual));
             }
         }
-        let sessions: Vec<_> = sessions.into_values().filter(|rows| rows.len() >= FEWEST).collect();
-        let tried = sessions.len() as f64;
-        for rows in sessions {
+        // Each session by itself: so few permutations could not tell two of them were the probability multiplied by their number.
+        for rows in sessions.into_values().filter(|rows| rows.len() >= FEWEST) {
             let mut left: Vec<Vec<f64>> = rows.values().map(|(_, residual)| (*residual).clone()).collect();
             tame(&mut left);
             for (name, coordinates) in SPACES {
                 let at: Option<Vec<Vec<f64>>> = rows.values().map(|(row, _)| coordinates(row)).collect();
                 let Some(at) = at else { continue };
                 let Some((p_value, share)) = by_neighbors(&left, &at, seed, context)? else { continue };
-                let p_value = (tried * p_value).min(1.0);
                 let is_more = best.as_ref().is_none_or(|best| share > 1.0 - best.left[0]);
                 if p_value <= SIGNIFICANT && share >= LEAST_SHARE && is_more {
                     let left = vec![1.0 - share.min(1.0 - 1e-6); what.len()];
